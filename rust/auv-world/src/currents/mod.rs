@@ -1,0 +1,9 @@
+//! Currents, horizontal, one file for each kind; they superpose.
+
+mod gridded;
+mod jet;
+mod vortices;
+
+pub use gridded::GriddedField;
+pub use jet::velocity as jet_velocity;
+pub use vortices::{RING_RADIUS, RING_SPEED, VortexField};

@@ -1,0 +1,133 @@
+//! Lamb-Oseen vortices (LFHH eq. 3-5), as a structure of arrays.
+
+use wide::{CmpLt as _, f64x4};
+
+use crate::lanes::{Column, exp};
+use crate::math::Vec2;
+
+/// Speed of a Lamb-Oseen vortex is greatest at this many core radii from its centre ...
+pub const RING_RADIUS: f64 = 1.120_906;
+/// ... where it is this times eta / (2 pi zeta).
+pub const RING_SPEED: f64 = 0.638_173;
+
+/// Vortices at one time.
+#[derive(Debug, Clone, Default)]
+pub struct VortexField {
+    x: Column,
+    y: Column,
+    /// eta / (2 pi).
+    strength: Column,
+    /// 1 / zeta^2.
+    inverse_core2: Column,
+}
+
+impl VortexField {
+    /// Appends a vortex: centre (m), circulation (m^2/s), core radius (m).
+    pub fn push(&mut self, centre: Vec2, circulation: f64, core_radius: f64) {
+        self.x.push(centre[0], 0.0);
+        self.y.push(centre[1], 0.0);
+        self.strength.push(circulation / std::f64::consts::TAU, 0.0);
+        self.inverse_core2.push(1.0 / (core_radius * core_radius), 1.0);
+    }
+
+    /// Moves vortex `i`.
+    pub fn place(&mut self, i: usize, centre: Vec2) {
+        self.x[i] = centre[0];
+        self.y[i] = centre[1];
+    }
+
+    /// Sets the circulation of vortex `i` (m^2/s).
+    pub fn spin(&mut self, i: usize, circulation: f64) {
+        self.strength[i] = circulation / std::f64::consts::TAU;
+    }
+
+    /// Number of vortices.
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+
+    /// Centre of vortex `i` (m).
+    pub fn centre(&self, i: usize) -> Vec2 {
+        [self.x[i], self.y[i]]
+    }
+
+    /// Circulation of vortex `i` (m^2/s).
+    pub fn circulation(&self, i: usize) -> f64 {
+        self.strength[i] * std::f64::consts::TAU
+    }
+
+    /// Core radius of vortex `i` (m).
+    pub fn core_radius(&self, i: usize) -> f64 {
+        1.0 / self.inverse_core2[i].sqrt()
+    }
+
+    /// Velocity at (x, y) in m/s: u = -eta (y - y0) / (2 pi r^2) (1 - exp(-r^2 / zeta^2)), v likewise
+    /// with x; at the centre the factor's limit eta / (2 pi zeta^2).
+    #[inline]
+    pub fn velocity(&self, x: f64, y: f64) -> Vec2 {
+        let (x, y) = (f64x4::splat(x), f64x4::splat(y));
+        let (mut u, mut v) = (f64x4::ZERO, f64x4::ZERO);
+        let columns = self.x.chunks().zip(self.y.chunks()).zip(self.strength.chunks()).zip(self.inverse_core2.chunks());
+        for (((cx, cy), strength), inverse_core2) in columns {
+            let (dx, dy) = (x - cx, y - cy);
+            let factor = strength * falloff(dx * dx + dy * dy, inverse_core2);
+            u -= factor * dy;
+            v += factor * dx;
+        }
+        let total = |values: f64x4| {
+            let [a, b, c, d] = values.to_array();
+            (a + b) + (c + d)
+        };
+        [total(u), total(v)]
+    }
+}
+
+/// (1 - exp(-r^2 / zeta^2)) / r^2, with its limit 1 / zeta^2 at the centre.
+#[inline(always)]
+fn falloff(r2: f64x4, inverse_core2: f64x4) -> f64x4 {
+    let s = r2 * inverse_core2;
+    let central = s.simd_lt(f64x4::splat(1e-8));
+    let factor = (f64x4::ONE - exp(-s)) / central.blend(f64x4::ONE, r2);
+    central.blend(inverse_core2, factor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ring_speed_and_centre() {
+        let mut field = VortexField::default();
+        let (eta, zeta) = (2000.0, 1200.0);
+        field.push([0.0, 0.0], eta, zeta);
+        let ring = field.velocity(RING_RADIUS * zeta, 0.0);
+        assert!((ring[1] - RING_SPEED * eta / (std::f64::consts::TAU * zeta)).abs() < 1e-6);
+        assert_eq!(field.velocity(0.0, 0.0), [0.0, 0.0]);
+        let near = field.velocity(1e-3, 0.0)[1];
+        assert!((near - eta / std::f64::consts::TAU / (zeta * zeta) * 1e-3).abs() < 1e-12);
+        assert!(field.velocity(0.9 * RING_RADIUS * zeta, 0.0)[1] < ring[1]);
+        assert!(field.velocity(1.1 * RING_RADIUS * zeta, 0.0)[1] < ring[1]);
+    }
+
+    #[test]
+    fn sums_an_odd_number() {
+        let mut field = VortexField::default();
+        for i in 0..3 {
+            field.push([1000.0 * f64::from(i), 0.0], 500.0, 1200.0);
+        }
+        let mut sum = [0.0; 2];
+        for i in 0..3 {
+            let mut one = VortexField::default();
+            one.push([1000.0 * f64::from(i), 0.0], 500.0, 1200.0);
+            let velocity = one.velocity(300.0, 700.0);
+            sum = [sum[0] + velocity[0], sum[1] + velocity[1]];
+        }
+        let total = field.velocity(300.0, 700.0);
+        assert!((total[0] - sum[0]).abs() < 1e-15 && (total[1] - sum[1]).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,23 @@
+//! Dynamic ocean worlds: seabed, obstacles that move, currents that turn.
+//!
+//! A [`scenario::Scenario`] is plain numbers; a [`world::World`] is one scenario at one time, after the
+//! map changes so far, and answers the questions that planners, vehicles and pictures ask: the current
+//! here, the clearance here, how far a sonar beam runs. Units are SI; z is depth, positive down.
+
+pub mod currents;
+pub mod error;
+pub mod families;
+pub mod grid;
+pub mod lanes;
+pub mod math;
+pub mod motion;
+pub mod obstacles;
+pub mod projection;
+pub mod rng;
+pub mod scenario;
+pub mod seabed;
+pub mod world;
+
+pub use error::WorldError;
+pub use scenario::Scenario;
+pub use world::World;

@@ -1,0 +1,135 @@
+//! Simple polygons, extruded between two depths: exact signed distance.
+
+use crate::math::{Vec2, Vec3};
+use crate::scenario::Polygon;
+
+/// A polygon's prism at its present place.
+#[derive(Debug, Clone)]
+pub struct Prism {
+    /// Corners relative to the centre (m).
+    corners: Vec<Vec2>,
+    centre: Vec2,
+    top: f64,
+    bottom: f64,
+}
+
+/// Mean of the corners (m).
+pub fn centre(vertices: &[Vec2]) -> Vec2 {
+    let n = vertices.len().max(1) as f64;
+    let sum = vertices.iter().fold([0.0, 0.0], |sum, v| [sum[0] + v[0], sum[1] + v[1]]);
+    [sum[0] / n, sum[1] / n]
+}
+
+impl Prism {
+    /// The prism where the scenario has it.
+    pub fn new(shape: &Polygon) -> Self {
+        let centre = centre(&shape.vertices_m);
+        let corners = shape.vertices_m.iter().map(|v| [v[0] - centre[0], v[1] - centre[1]]).collect();
+        Self { corners, centre, top: shape.top_m, bottom: shape.bottom_m }
+    }
+
+    /// Moves its centre.
+    pub fn place(&mut self, centre: Vec2) {
+        self.centre = centre;
+    }
+
+    /// Corners at the present place (m).
+    pub fn vertices(&self) -> impl Iterator<Item = Vec2> + '_ {
+        self.corners.iter().map(|c| [c[0] + self.centre[0], c[1] + self.centre[1]])
+    }
+
+    /// Signed distance (m).
+    pub fn clearance(&self, point: Vec3) -> f64 {
+        let p = [point[0] - self.centre[0], point[1] - self.centre[1]];
+        super::prism_distance(outline_distance(&self.corners, p), self.top, self.bottom, point[2])
+    }
+}
+
+/// Signed distance to a polygon's outline (m), negative inside.
+fn outline_distance(corners: &[Vec2], p: Vec2) -> f64 {
+    let mut nearest2 = f64::INFINITY;
+    let mut inside = false;
+    let mut from = corners[corners.len() - 1];
+    for &to in corners {
+        let edge = [to[0] - from[0], to[1] - from[1]];
+        let offset = [p[0] - from[0], p[1] - from[1]];
+        let along = ((offset[0] * edge[0] + offset[1] * edge[1]) / (edge[0] * edge[0] + edge[1] * edge[1])).clamp(0.0, 1.0);
+        let gap = [offset[0] - along * edge[0], offset[1] - along * edge[1]];
+        nearest2 = nearest2.min(gap[0] * gap[0] + gap[1] * gap[1]);
+        // Crossing rule: edges that a ray to +x crosses.
+        if (from[1] > p[1]) != (to[1] > p[1]) && p[0] < from[0] + edge[0] * (p[1] - from[1]) / edge[1] {
+            inside = !inside;
+        }
+        from = to;
+    }
+    if inside { -nearest2.sqrt() } else { nearest2.sqrt() }
+}
+
+fn turn(a: Vec2, b: Vec2, c: Vec2) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// Whether segments ab and cd share a point.
+fn meet(a: Vec2, b: Vec2, c: Vec2, d: Vec2) -> bool {
+    let on = |a: Vec2, b: Vec2, p: Vec2| {
+        (a[0].min(b[0])..=a[0].max(b[0])).contains(&p[0]) && (a[1].min(b[1])..=a[1].max(b[1])).contains(&p[1])
+    };
+    let (t1, t2, t3, t4) = (turn(a, b, c), turn(a, b, d), turn(c, d, a), turn(c, d, b));
+    (t1 * t2 < 0.0 && t3 * t4 < 0.0)
+        || (t1 == 0.0 && on(a, b, c))
+        || (t2 == 0.0 && on(a, b, d))
+        || (t3 == 0.0 && on(c, d, a))
+        || (t4 == 0.0 && on(c, d, b))
+}
+
+/// Checks that corners make a simple polygon with an inside; says what is wrong if not.
+pub fn check_simple(corners: &[Vec2]) -> Result<(), String> {
+    let n = corners.len();
+    if !(3..=10_000).contains(&n) {
+        return Err("a polygon has 3 .. 10000 corners".into());
+    }
+    for i in 0..n {
+        let (a, b) = (corners[i], corners[(i + 1) % n]);
+        if a == b {
+            return Err(format!("corners {i} and {} are the same", (i + 1) % n));
+        }
+        for j in i + 2..n {
+            if (i, j) != (0, n - 1) && meet(a, b, corners[j], corners[(j + 1) % n]) {
+                return Err(format!("edges {i} and {j} meet: the polygon must not touch itself"));
+            }
+        }
+    }
+    let area: f64 = (0..n).map(|i| turn([0.0; 2], corners[i], corners[(i + 1) % n])).sum();
+    if area == 0.0 {
+        return Err("the corners lie on a line".into());
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square() -> Prism {
+        let vertices_m = vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]];
+        Prism::new(&Polygon { vertices_m, top_m: 2.0, bottom_m: 8.0, velocity_mps: [0.0; 2] })
+    }
+
+    #[test]
+    fn signed_distance() {
+        let prism = square();
+        assert_eq!(prism.clearance([13.0, 14.0, 5.0]), 5.0);
+        assert_eq!(prism.clearance([5.0, 5.0, 5.0]), -3.0);
+        assert_eq!(prism.clearance([5.0, 5.0, 0.0]), 2.0);
+        assert_eq!(prism.clearance([13.0, 5.0, -2.0]), 5.0);
+        assert_eq!(prism.clearance([9.5, 5.0, 5.0]), -0.5);
+    }
+
+    #[test]
+    fn refuses_what_is_not_simple() {
+        assert!(check_simple(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]).is_ok());
+        assert!(check_simple(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]).unwrap_err().contains("meet"));
+        assert!(check_simple(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]).unwrap_err().contains("line"));
+        assert!(check_simple(&[[0.0, 0.0], [1.0, 1.0]]).is_err());
+    }
+}

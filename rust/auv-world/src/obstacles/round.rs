@@ -1,0 +1,221 @@
+//! Spheres and discs as structures of arrays: exact signed distances, several lanes at once.
+
+use wide::{CmpLt as _, f64x4};
+
+use crate::lanes::{Column, least};
+use crate::math::{Vec2, Vec3};
+
+/// Balls at one time.
+#[derive(Debug, Clone, Default)]
+pub struct Spheres {
+    x: Column,
+    y: Column,
+    z: Column,
+    radius: Column,
+}
+
+/// Vertical cylinders through all depths at one time.
+#[derive(Debug, Clone, Default)]
+pub struct Discs {
+    x: Column,
+    y: Column,
+    radius: Column,
+}
+
+/// Padding of a column of centres: far from everything.
+const FAR: f64 = 1e15;
+
+/// The lesser of `nearest` and distance - radius of four balls. Roots are taken only if one of them may
+/// be nearer than the nearest so far, (distance)^2 < (nearest + radius)^2.
+#[inline(always)]
+fn nearer(distance2: f64x4, radius: f64x4, nearest: f64) -> f64 {
+    let reach = f64x4::splat(nearest) + radius;
+    if distance2.simd_lt(reach * reach).any() { least(distance2.sqrt() - radius, nearest) } else { nearest }
+}
+
+/// How far a beam runs before it meets a ball of the given centre (relative to the origin) and radius;
+/// `square` is the squared length of the beam's direction in the space of the ball.
+#[inline]
+fn chord(centre_dot: f64, centre2: f64, radius: f64, square: f64) -> f64 {
+    let outside = centre2 - radius * radius;
+    if outside <= 0.0 {
+        return 0.0;
+    }
+    let discriminant = centre_dot * centre_dot - square * outside;
+    if centre_dot <= 0.0 || discriminant < 0.0 {
+        return f64::INFINITY;
+    }
+    (centre_dot - discriminant.sqrt()) / square
+}
+
+impl Spheres {
+    /// Appends a ball.
+    pub fn push(&mut self, centre: Vec3, radius: f64) {
+        self.x.push(centre[0], FAR);
+        self.y.push(centre[1], FAR);
+        self.z.push(centre[2], FAR);
+        self.radius.push(radius, 0.0);
+    }
+
+    /// Moves ball `i`.
+    pub fn place(&mut self, i: usize, centre: Vec3) {
+        (self.x[i], self.y[i], self.z[i]) = (centre[0], centre[1], centre[2]);
+    }
+
+    /// Number of balls.
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+
+    /// Centre (m) and radius (m) of ball `i`.
+    pub fn get(&self, i: usize) -> (Vec3, f64) {
+        ([self.x[i], self.y[i], self.z[i]], self.radius[i])
+    }
+
+    /// Signed distance to the nearest (m); infinite if there are none.
+    #[inline]
+    pub fn clearance(&self, point: Vec3) -> f64 {
+        let [x, y, z] = point.map(f64x4::splat);
+        let columns = self.x.chunks().zip(self.y.chunks()).zip(self.z.chunks()).zip(self.radius.chunks());
+        columns.fold(f64::INFINITY, |nearest, (((cx, cy), cz), radius)| {
+            let (dx, dy, dz) = (x - cx, y - cy, z - cz);
+            nearer(dx * dx + dy * dy + dz * dz, radius, nearest)
+        })
+    }
+
+    /// Appends the balls nearer than `longest`.
+    pub fn near(&self, origin: Vec3, longest: f64, candidates: &mut Vec<u32>) {
+        for i in 0..self.x.len() {
+            let reach = longest + self.radius[i];
+            let c = [self.x[i] - origin[0], self.y[i] - origin[1], self.z[i] - origin[2]];
+            if c[0] * c[0] + c[1] * c[1] + c[2] * c[2] < reach * reach {
+                candidates.push(i as u32);
+            }
+        }
+    }
+
+    /// How far a beam of unit `direction` runs before it meets one of `candidates` (m).
+    pub fn range(&self, origin: Vec3, direction: Vec3, candidates: &[u32]) -> f64 {
+        let mut nearest = f64::INFINITY;
+        for &i in candidates {
+            let i = i as usize;
+            let c = [self.x[i] - origin[0], self.y[i] - origin[1], self.z[i] - origin[2]];
+            let along = c[0] * direction[0] + c[1] * direction[1] + c[2] * direction[2];
+            let square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+            nearest = nearest.min(chord(along, square, self.radius[i], 1.0));
+        }
+        nearest
+    }
+}
+
+impl Discs {
+    /// Appends a disc.
+    pub fn push(&mut self, centre: Vec2, radius: f64) {
+        self.x.push(centre[0], FAR);
+        self.y.push(centre[1], FAR);
+        self.radius.push(radius, 0.0);
+    }
+
+    /// Moves disc `i`.
+    pub fn place(&mut self, i: usize, centre: Vec2) {
+        (self.x[i], self.y[i]) = (centre[0], centre[1]);
+    }
+
+    /// Number of discs.
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+
+    /// Centre (m) and radius (m) of disc `i`.
+    pub fn get(&self, i: usize) -> (Vec2, f64) {
+        ([self.x[i], self.y[i]], self.radius[i])
+    }
+
+    /// Signed distance to the nearest (m); infinite if there are none.
+    #[inline]
+    pub fn clearance(&self, point: Vec3) -> f64 {
+        let (x, y) = (f64x4::splat(point[0]), f64x4::splat(point[1]));
+        let columns = self.x.chunks().zip(self.y.chunks()).zip(self.radius.chunks());
+        columns.fold(f64::INFINITY, |nearest, ((cx, cy), radius)| {
+            let (dx, dy) = (x - cx, y - cy);
+            nearer(dx * dx + dy * dy, radius, nearest)
+        })
+    }
+
+    /// Appends the discs nearer than `longest`.
+    pub fn near(&self, origin: Vec3, longest: f64, candidates: &mut Vec<u32>) {
+        for i in 0..self.x.len() {
+            let reach = longest + self.radius[i];
+            let c = [self.x[i] - origin[0], self.y[i] - origin[1]];
+            if c[0] * c[0] + c[1] * c[1] < reach * reach {
+                candidates.push(i as u32);
+            }
+        }
+    }
+
+    /// How far a beam of unit `direction` runs before it meets one of `candidates` (m).
+    pub fn range(&self, origin: Vec3, direction: Vec3, candidates: &[u32]) -> f64 {
+        let square = direction[0] * direction[0] + direction[1] * direction[1];
+        if square < 1e-12 {
+            // Straight up or down: inside one or never.
+            return if self.clearance(origin) <= 0.0 { 0.0 } else { f64::INFINITY };
+        }
+        let mut nearest = f64::INFINITY;
+        for &i in candidates {
+            let i = i as usize;
+            let c = [self.x[i] - origin[0], self.y[i] - origin[1]];
+            let along = c[0] * direction[0] + c[1] * direction[1];
+            nearest = nearest.min(chord(along, c[0] * c[0] + c[1] * c[1], self.radius[i], square));
+        }
+        nearest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::add_scaled;
+    use proptest::prelude::*;
+
+    const ALL: [u32; 7] = [0, 1, 2, 3, 4, 5, 6];
+
+    proptest! {
+        #[test]
+        fn beam_ends_on_a_surface(p in prop::array::uniform3(-9e3..9e3_f64), d in prop::array::uniform3(-1.0..1.0_f64)) {
+            let mut spheres = Spheres::default();
+            let mut discs = Discs::default();
+            for i in 0..7 {
+                let t = f64::from(i);
+                spheres.push([1500.0 * t - 4000.0, 700.0 * t, 500.0 * t - 900.0], 400.0 + 100.0 * t);
+                discs.push([1500.0 * t - 4000.0, 700.0 * t], 400.0 + 100.0 * t);
+            }
+            let length = crate::math::norm(d);
+            prop_assume!(length > 0.1);
+            let d = [d[0] / length, d[1] / length, d[2] / length];
+            for (clearance, range) in [
+                (spheres.clearance(p), spheres.range(p, d, &ALL)),
+                (discs.clearance(p), discs.range(p, d, &ALL)),
+            ] {
+                prop_assert!(range >= clearance.max(0.0) - 1e-6);
+                if clearance <= 0.0 { prop_assert_eq!(range, 0.0); }
+            }
+            let range = spheres.range(p, d, &ALL);
+            let mut near = Vec::new();
+            spheres.near(p, 5000.0, &mut near);
+            prop_assert_eq!(range.min(5000.0), spheres.range(p, d, &near).min(5000.0));
+            if range.is_finite() && range > 0.0 {
+                prop_assert!(spheres.clearance(add_scaled(p, range, d)).abs() < 1e-6);
+            }
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! Gaussian peaks on a flat floor (LFHH eq. 11); the sea floor is the highest of them.
+//!
+//! With u = sqrt(a^2 dy^2 + b^2 dx^2) / sigma a peak is h exp(-u^2 / 2), and u changes by at most
+//! k = max(a, b) / sigma for each metre. So within t metres on the map the slope is at most the
+//! greatest of |h u' exp(-u'^2 / 2)| k for u' in [u - k t, u], and a point `gap` above the peak is at
+//! least gap / sqrt(1 + slope^2) away from it.
+
+use wide::{CmpLt as _, f64x4};
+
+use super::plane_range;
+use crate::lanes::{Column, LANES};
+use crate::math::{Vec3, add_scaled, exp};
+use crate::scenario::{Peak, Peaks};
+
+/// exp(-1/2): what is left of a peak where it is steepest, at u = 1.
+const STEEPEST: f64 = 0.606_530_659_712_633_4;
+
+/// At most exp(u^2 / 2), without an exponential: the start of its series, and 1 for u < 0.
+#[inline(always)]
+fn falls_by(u: f64x4) -> f64x4 {
+    let u = u.fast_max(f64x4::ZERO);
+    let s = f64x4::HALF * u * u;
+    f64x4::ONE + s * (f64x4::ONE + s * (f64x4::HALF + s * f64x4::splat(1.0 / 6.0)))
+}
+
+/// Peaks as a structure of arrays.
+#[derive(Debug, Clone)]
+pub struct PeakFloor {
+    floor_depth: f64,
+    x: Column,
+    y: Column,
+    height: Column,
+    /// (b / sigma)^2 and (a / sigma)^2.
+    along_x: Column,
+    along_y: Column,
+    /// k = max(a, b) / sigma.
+    steepness: Column,
+}
+
+impl PeakFloor {
+    /// Prepares checked peaks.
+    pub fn new(peaks: &Peaks) -> Self {
+        let column = |value: fn(&Peak) -> f64| {
+            let mut column = Column::default();
+            peaks.peaks.iter().for_each(|peak| column.push(value(peak), 0.0));
+            column
+        };
+        Self {
+            floor_depth: peaks.floor_depth_m,
+            x: column(|p| p.x_m),
+            y: column(|p| p.y_m),
+            height: column(|p| p.height_m),
+            along_x: column(|p| (p.b / p.sigma_m) * (p.b / p.sigma_m)),
+            along_y: column(|p| (p.a / p.sigma_m) * (p.a / p.sigma_m)),
+            steepness: column(|p| p.a.max(p.b) / p.sigma_m),
+        }
+    }
+
+    /// u^2 of peak `i`.
+    #[inline(always)]
+    fn u2(&self, i: usize, x: f64, y: f64) -> f64 {
+        let (dx, dy) = (x - self.x[i], y - self.y[i]);
+        self.along_x[i] * dx * dx + self.along_y[i] * dy * dy
+    }
+
+    /// Depth of the floor (m).
+    pub fn depth(&self, x: f64, y: f64) -> f64 {
+        let mut highest = 0.0;
+        for i in 0..self.x.len() {
+            let height = self.height[i] * exp(-0.5 * self.u2(i, x, y));
+            highest = if height > highest { height } else { highest };
+        }
+        self.floor_depth - highest
+    }
+
+    /// The lesser of `nearest` and a lower bound of the signed distance to the floor (m).
+    #[inline]
+    pub fn clearance(&self, point: Vec3, nearest: f64) -> f64 {
+        let above = self.floor_depth - point[2];
+        let mut best = nearest.min(above);
+        let (x, y) = (f64x4::splat(point[0]), f64x4::splat(point[1]));
+        let shapes = self.along_x.chunks().zip(self.along_y.chunks()).zip(self.steepness.chunks());
+        let peaks = self.x.chunks().zip(self.y.chunks()).zip(self.height.chunks()).zip(shapes);
+        for (chunk, (((px, py), height), ((ax, ay), steepness))) in peaks.enumerate() {
+            // Most peaks cannot rise to within `best` of the point: sort them out four at once. Padding
+            // has no height, so it never does.
+            let (dx, dy) = (x - px, y - py);
+            let u = (ax * dx * dx + ay * dy * dy).sqrt();
+            let room = f64x4::splat((above - best).max(0.0));
+            let reaches = (room * falls_by(u - steepness * f64x4::splat(best.max(0.0)))).simd_lt(height);
+            let mut left = reaches.to_bitmask();
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize;
+                left &= left - 1;
+                best = self.peak_clearance(LANES * chunk + lane, u.to_array()[lane], above, best);
+            }
+        }
+        best
+    }
+
+    /// The lesser of `nearest` and a lower bound of the distance to peak `i`, from a point `above` the
+    /// flat floor at `u`.
+    #[inline]
+    fn peak_clearance(&self, i: usize, u: f64, above: f64, nearest: f64) -> f64 {
+        let (height, k) = (self.height[i], self.steepness[i]);
+        let here = height * exp(-0.5 * u * u);
+        let gap = above - here;
+        if gap <= 0.0 {
+            return gap.min(nearest);
+        }
+        let low = (u - k * gap.min(nearest.max(0.0))).max(0.0);
+        let slope = k * if low > 1.0 {
+            height * low * exp(-0.5 * low * low)
+        } else if u < 1.0 {
+            here * u
+        } else {
+            height * STEEPEST
+        };
+        (gap / (1.0 + slope * slope).sqrt()).min(nearest)
+    }
+
+    /// Appends the peaks that a beam of at most `longest` metres from `origin` can meet.
+    pub fn near(&self, origin: Vec3, longest: f64, candidates: &mut Vec<u32>) {
+        let lowest = self.floor_depth - origin[2] - longest;
+        for i in 0..self.x.len() {
+            let closest = self.u2(i, origin[0], origin[1]).sqrt() - self.steepness[i] * longest;
+            if self.height[i] * exp(-0.5 * closest.max(0.0) * closest.max(0.0)) > lowest {
+                candidates.push(i as u32);
+            }
+        }
+    }
+
+    /// How far a beam of unit `direction` runs before it meets the flat floor or one of the peaks
+    /// `candidates` (m), at most `longest`.
+    pub fn range(&self, origin: Vec3, direction: Vec3, longest: f64, candidates: &[u32]) -> f64 {
+        let above = self.floor_depth - origin[2];
+        let mut range = longest.min(plane_range(above, direction[2]));
+        let horizontal2 = direction[0] * direction[0] + direction[1] * direction[1];
+        for &i in candidates {
+            let i = i as usize;
+            // u^2 along the beam is a parabola: q0 + 2 q1 t + q2 t^2.
+            let (dx, dy) = (origin[0] - self.x[i], origin[1] - self.y[i]);
+            let (ax, ay) = (self.along_x[i], self.along_y[i]);
+            let q0 = ax * dx * dx + ay * dy * dy;
+            let q1 = ax * dx * direction[0] + ay * dy * direction[1];
+            let q2 = ax * direction[0] * direction[0] + ay * direction[1] * direction[1];
+            let nearest = if horizontal2 > 1e-12 { (-q1 / q2).clamp(0.0, range) } else { 0.0 };
+            let least = (q0 + nearest * (2.0 * q1 + q2 * nearest)).max(0.0);
+            let lowest = above.min(above - range * direction[2]);
+            if lowest >= self.height[i] * exp(-0.5 * least) {
+                continue;
+            }
+            range = crate::obstacles::march(origin, direction, range, |point| {
+                let u = self.u2(i, point[0], point[1]).sqrt();
+                self.peak_clearance(i, u, self.floor_depth - point[2], f64::INFINITY)
+            });
+        }
+        range
+    }
+
+    /// A point on the surface, for tests and pictures: `t` metres along a beam.
+    #[doc(hidden)]
+    pub fn gap_along(&self, origin: Vec3, direction: Vec3, t: f64) -> f64 {
+        let point = add_scaled(origin, t, direction);
+        self.depth(point[0], point[1]) - point[2]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn floor() -> PeakFloor {
+        let peak = |x_m, y_m, height_m, a, b, sigma_m| Peak { x_m, y_m, height_m, a, b, sigma_m };
+        PeakFloor::new(&Peaks {
+            floor_depth_m: 20_000.0,
+            peaks: vec![
+                peak(5000.0, 9000.0, 14_000.0, 0.7, 1.2, 1800.0),
+                peak(8000.0, 4000.0, 7000.0, 1.0, 0.6, 2500.0),
+                peak(2000.0, 2000.0, 12_000.0, 1.1, 1.1, 1500.0),
+            ],
+        })
+    }
+
+    #[test]
+    fn the_series_lies_below() {
+        for i in -10..1000 {
+            let u = 0.01 * f64::from(i);
+            assert!(falls_by(f64x4::splat(u)).to_array()[0] <= libm::exp(0.5 * u.max(0.0) * u.max(0.0)));
+        }
+        assert!((STEEPEST - exp(-0.5)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn summit_and_flat() {
+        let floor = floor();
+        assert!((floor.depth(5000.0, 9000.0) - 6000.0).abs() < 1.0);
+        assert!((floor.clearance([90_000.0, 0.0, 15_000.0], f64::INFINITY) - 5000.0).abs() < 1e-9);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+        /// The distance to any point of the floor is an upper bound of the true distance.
+        #[test]
+        fn never_overestimates(
+            p in (0.0..10e3_f64, 0.0..12e3_f64, 0.0..20e3_f64),
+            q in (-3e3..3e3_f64, -3e3..3e3_f64),
+        ) {
+            let floor = floor();
+            let point = [p.0, p.1, p.2];
+            let (x, y) = (p.0 + q.0, p.1 + q.1);
+            let surface = [x, y, floor.depth(x, y)];
+            let clearance = floor.clearance(point, f64::INFINITY);
+            prop_assert_eq!(clearance <= 0.0, floor.depth(p.0, p.1) <= p.2);
+            if clearance > 0.0 {
+                prop_assert!(clearance <= crate::math::distance(point, surface) + 1e-6);
+                let bounded = floor.clearance(point, 700.0);
+                prop_assert!(bounded <= 700.0 && bounded <= crate::math::distance(point, surface) + 1e-6);
+            }
+        }
+
+        /// A beam runs free up to its range and, if it stopped, it stopped at the floor.
+        #[test]
+        fn beams(p in (0.0..10e3_f64, 0.0..12e3_f64, 0.0..20e3_f64), d in prop::array::uniform3(-1.0..1.0_f64)) {
+            let floor = floor();
+            let origin = [p.0, p.1, p.2];
+            let length = crate::math::norm(d);
+            prop_assume!(length > 0.1 && floor.clearance(origin, f64::INFINITY) > 10.0);
+            let direction = [d[0] / length, d[1] / length, d[2] / length];
+            let mut near = Vec::new();
+            floor.near(origin, 5000.0, &mut near);
+            let range = floor.range(origin, direction, 5000.0, &near);
+            prop_assert_eq!(range, floor.range(origin, direction, 5000.0, &[0, 1, 2]));
+            for i in 0..50 {
+                prop_assert!(floor.gap_along(origin, direction, range * f64::from(i) / 50.0) > -1e-6);
+            }
+            if range < 5000.0 {
+                let end = add_scaled(origin, range, direction);
+                prop_assert!(floor.clearance(end, f64::INFINITY) < 6.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,503 @@
+//! A world: one scenario at one time, after the map changes so far.
+//!
+//! It is a pure function of scenario, seed and the changes so far (each a time and the vehicle's place),
+//! so it can be copied, saved as those few numbers, and made again.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::currents::{GriddedField, VortexField, jet_velocity};
+use crate::error::WorldError;
+use crate::math::{Vec2, Vec3, distance};
+use crate::motion::reflect;
+use crate::obstacles::{Discs, Solid, Spheres, polygon::Prism};
+use crate::rng::{Purpose, Stream};
+use crate::scenario::{Change, Current, Hold, Jet, Mission, Obstacle, Redraw, Scenario, Seabed, VortexDraw};
+use crate::seabed::Floor;
+
+/// A map change that has happened.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ChangeEvent {
+    /// When (s).
+    pub time_s: f64,
+    /// Where the vehicle was (m).
+    pub vehicle_m: Vec3,
+}
+
+/// What never changes in a world: shared by its copies.
+#[derive(Debug)]
+struct Fixed {
+    scenario: Scenario,
+    floor: Floor,
+    gridded: Vec<GriddedField>,
+    jets: Vec<Jet>,
+    uniform: Vec2,
+    steady: bool,
+}
+
+/// Where an obstacle is kept.
+#[derive(Debug, Clone, Copy)]
+enum Slot {
+    Sphere(usize),
+    Disc(usize),
+    Solid(usize),
+}
+
+/// Something that moves at constant velocity from where it last was put.
+#[derive(Debug, Clone, Copy)]
+struct Body {
+    base: Vec3,
+    velocity: Vec3,
+}
+
+/// One scenario at one time.
+#[derive(Debug, Clone)]
+pub struct World {
+    fixed: Arc<Fixed>,
+    seed: u64,
+    mission: usize,
+    changes: Vec<ChangeEvent>,
+    time_s: f64,
+    bodies: Vec<Body>,
+    slots: Vec<Slot>,
+    eddies: Vec<Body>,
+    spheres: Spheres,
+    discs: Discs,
+    solids: Vec<Solid>,
+    vortices: VortexField,
+}
+
+impl World {
+    /// A world at time 0. `mission` chooses among the scenario's start/goal pairs.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the scenario is not allowed or has no such mission.
+    pub fn new(scenario: Scenario, seed: u64, mission: usize) -> Result<Self, WorldError> {
+        scenario.check_numbers()?;
+        let count = scenario.missions.len();
+        if mission >= count {
+            let allowed = format!("the scenario has missions 0 .. {}", count - 1);
+            return Err(WorldError::parameter("mission", mission, allowed));
+        }
+        let world = Self { seed, mission, ..Self::unchecked(scenario) };
+        world.scenario().check_clear(&world)?;
+        Ok(world)
+    }
+
+    /// A world made again from its scenario, seed, mission, changes and time.
+    ///
+    /// # Errors
+    /// As [`World::new`].
+    pub fn restore(
+        scenario: Scenario,
+        seed: u64,
+        mission: usize,
+        changes: &[ChangeEvent],
+        time_s: f64,
+    ) -> Result<Self, WorldError> {
+        let mut world = Self::new(scenario, seed, mission)?;
+        for change in changes {
+            world.set_time(change.time_s);
+            world.apply_change(change.vehicle_m);
+        }
+        world.set_time(time_s);
+        Ok(world)
+    }
+
+    /// A world at time 0 of a scenario whose numbers are known to be good.
+    fn unchecked(scenario: Scenario) -> Self {
+        let low = [scenario.domain.min_m[0], scenario.domain.min_m[1]].map(|v| v - scenario.domain.margin_m);
+        let high = [scenario.domain.max_m[0], scenario.domain.max_m[1]].map(|v| v + scenario.domain.margin_m);
+        let projection = scenario.projection.as_ref();
+        let floor = match &scenario.seabed {
+            None if scenario.dimensions == 3 => Floor::Flat(scenario.domain.max_m[2]),
+            None => Floor::None,
+            Some(Seabed::Flat(flat)) => Floor::Flat(flat.depth_m),
+            Some(Seabed::Peaks(peaks)) => Floor::Peaks(crate::seabed::PeakFloor::new(peaks)),
+            Some(Seabed::Gridded(grid)) => {
+                Floor::Gridded(crate::seabed::GridFloor::new(grid, projection, (low, high)))
+            }
+        };
+        let (mut gridded, mut jets, mut uniform) = (Vec::new(), Vec::new(), [0.0, 0.0]);
+        let (mut vortices, mut eddies) = (VortexField::default(), Vec::new());
+        for current in &scenario.currents {
+            match current {
+                Current::Uniform(current) => {
+                    uniform = [uniform[0] + current.velocity_mps[0], uniform[1] + current.velocity_mps[1]];
+                }
+                Current::Jet(jet) => jets.push(jet.clone()),
+                Current::Gridded(grid) => gridded.push(GriddedField::new(grid, projection, (low, high))),
+                Current::Vortices(group) => {
+                    for vortex in &group.vortices {
+                        vortices.push([vortex.x_m, vortex.y_m], vortex.circulation_m2ps, group.core_radius_m);
+                        eddies.push(Body {
+                            base: [vortex.x_m, vortex.y_m, 0.0],
+                            velocity: [vortex.drift_mps[0], vortex.drift_mps[1], 0.0],
+                        });
+                    }
+                }
+            }
+        }
+        let (mut spheres, mut discs, mut solids) = (Spheres::default(), Discs::default(), Vec::new());
+        let mut slots = Vec::with_capacity(scenario.obstacles.len());
+        let mut bodies = Vec::with_capacity(scenario.obstacles.len());
+        for obstacle in &scenario.obstacles {
+            bodies.push(Body { base: obstacle.position_m(), velocity: obstacle.velocity_mps() });
+            slots.push(match obstacle {
+                Obstacle::Sphere(sphere) => {
+                    spheres.push(sphere.position_m, sphere.radius_m);
+                    Slot::Sphere(spheres.len() - 1)
+                }
+                Obstacle::Disc(disc) => {
+                    discs.push(disc.position_m, disc.radius_m);
+                    Slot::Disc(discs.len() - 1)
+                }
+                Obstacle::Cylinder(shape) => {
+                    solids.push(Solid::Cylinder(shape.clone()));
+                    Slot::Solid(solids.len() - 1)
+                }
+                Obstacle::Superquadric(shape) => {
+                    solids.push(Solid::Superquadric(shape.clone()));
+                    Slot::Solid(solids.len() - 1)
+                }
+                Obstacle::Polygon(shape) => {
+                    solids.push(Solid::Polygon(Prism::new(shape)));
+                    Slot::Solid(solids.len() - 1)
+                }
+            });
+        }
+        let steady = gridded.iter().all(GriddedField::is_steady)
+            && jets.iter().all(|jet| jet.time_scale_s.is_none())
+            && bodies.iter().chain(&eddies).all(|body| body.velocity == [0.0; 3]);
+        let fixed = Arc::new(Fixed { scenario, floor, gridded, jets, uniform, steady });
+        Self {
+            fixed,
+            seed: 0,
+            mission: 0,
+            changes: Vec::new(),
+            time_s: 0.0,
+            bodies,
+            slots,
+            eddies,
+            spheres,
+            discs,
+            solids,
+            vortices,
+        }
+    }
+
+    /// The same world at time 0 before any change, for another seed: nothing is made again.
+    pub fn fresh(&self, seed: u64) -> Self {
+        let mut world = self.clone();
+        if !self.changes.is_empty() {
+            // A change moves bases and spins: only the scenario still knows them.
+            world = Self { mission: self.mission, ..Self::unchecked(self.fixed.scenario.clone()) };
+        }
+        world.seed = seed;
+        world.set_time(0.0);
+        world
+    }
+
+    /// Its scenario.
+    pub fn scenario(&self) -> &Scenario {
+        &self.fixed.scenario
+    }
+
+    /// Its seed.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Which of the scenario's missions it is for.
+    pub fn mission_index(&self) -> usize {
+        self.mission
+    }
+
+    /// Start and goal.
+    pub fn mission(&self) -> &Mission {
+        &self.fixed.scenario.missions[self.mission]
+    }
+
+    /// The changes so far.
+    pub fn changes(&self) -> &[ChangeEvent] {
+        &self.changes
+    }
+
+    /// The present time (s).
+    pub fn time_s(&self) -> f64 {
+        self.time_s
+    }
+
+    /// Whether currents and obstacles stay as they are between map changes.
+    pub fn is_steady(&self) -> bool {
+        self.fixed.steady
+    }
+
+    /// The sea floor.
+    pub fn floor(&self) -> &Floor {
+        &self.fixed.floor
+    }
+
+    /// Spheres at the present time.
+    pub fn spheres(&self) -> &Spheres {
+        &self.spheres
+    }
+
+    /// Discs at the present time.
+    pub fn discs(&self) -> &Discs {
+        &self.discs
+    }
+
+    /// Whether there are obstacles other than spheres and discs.
+    pub fn has_other_solids(&self) -> bool {
+        !self.solids.is_empty()
+    }
+
+    /// Vortices at the present time.
+    pub fn vortices(&self) -> &VortexField {
+        &self.vortices
+    }
+
+    /// Whether vortices are all the current there is.
+    pub fn only_vortices(&self) -> bool {
+        self.fixed.gridded.is_empty() && self.fixed.jets.is_empty() && self.fixed.uniform == [0.0, 0.0]
+    }
+
+    /// Position (m) of obstacle `i` at the present time.
+    pub fn obstacle_position(&self, i: usize) -> Vec3 {
+        self.place(self.bodies[i])
+    }
+
+    /// Moves everything to `time_s` (s). Between map changes this may go forwards and backwards.
+    pub fn set_time(&mut self, time_s: f64) {
+        if time_s == self.time_s {
+            return;
+        }
+        self.time_s = time_s;
+        if !self.fixed.steady {
+            self.refresh();
+        }
+    }
+
+    fn since_change(&self) -> f64 {
+        self.time_s - self.changes.last().map_or(0.0, |change| change.time_s)
+    }
+
+    fn place(&self, body: Body) -> Vec3 {
+        let elapsed = self.since_change();
+        let domain = &self.fixed.scenario.domain;
+        std::array::from_fn(|axis| {
+            reflect(body.base[axis], body.velocity[axis] * elapsed, domain.min_m[axis], domain.max_m[axis])
+        })
+    }
+
+    /// Puts everything that moves where it belongs now.
+    fn refresh(&mut self) {
+        for i in 0..self.bodies.len() {
+            let position = self.place(self.bodies[i]);
+            match self.slots[i] {
+                Slot::Sphere(slot) => self.spheres.place(slot, position),
+                Slot::Disc(slot) => self.discs.place(slot, [position[0], position[1]]),
+                Slot::Solid(slot) => self.solids[slot].place(position),
+            }
+        }
+        for i in 0..self.eddies.len() {
+            let position = self.place(self.eddies[i]);
+            self.vortices.place(i, [position[0], position[1]]);
+        }
+    }
+
+    /// Velocity of the water (m/s, horizontal) at a point (m) at the present time.
+    #[inline]
+    pub fn current(&self, point: Vec3) -> Vec2 {
+        let vortices = self.vortices.velocity(point[0], point[1]);
+        let mut sum = [self.fixed.uniform[0] + vortices[0], self.fixed.uniform[1] + vortices[1]];
+        for jet in &self.fixed.jets {
+            let velocity = jet_velocity(jet, point[0], point[1], self.time_s);
+            sum = [sum[0] + velocity[0], sum[1] + velocity[1]];
+        }
+        for grid in &self.fixed.gridded {
+            let velocity = grid.velocity(point, self.time_s);
+            sum = [sum[0] + velocity[0], sum[1] + velocity[1]];
+        }
+        sum
+    }
+
+    /// Signed distance (m) from a point to the nearest solid at the present time: the least over
+    /// obstacles and sea floor, exact for spheres and discs, never too large for the others.
+    #[inline]
+    pub fn clearance(&self, point: Vec3) -> f64 {
+        let mut nearest = self.spheres.clearance(point).min(self.discs.clearance(point));
+        for solid in &self.solids {
+            nearest = nearest.min(solid.clearance(point));
+        }
+        self.fixed.floor.clearance(point, nearest)
+    }
+
+    /// Depth of the sea floor (m) at (x, y); infinite where there is none.
+    pub fn floor_depth(&self, x: f64, y: f64) -> f64 {
+        self.fixed.floor.depth(x, y)
+    }
+
+    /// How far sonar beams of unit `directions` run from `origin` before they meet a solid, a wall of
+    /// the box or the surface (m), at most `longest`. `scratch` keeps its memory between calls.
+    pub fn sonar(&self, origin: Vec3, directions: &[Vec3], longest: f64, scratch: &mut Scratch, ranges: &mut [f64]) {
+        for list in [&mut scratch.spheres, &mut scratch.discs, &mut scratch.floor] {
+            list.clear();
+        }
+        self.spheres.near(origin, longest, &mut scratch.spheres);
+        self.discs.near(origin, longest, &mut scratch.discs);
+        self.fixed.floor.near(origin, longest, &mut scratch.floor);
+        let domain = &self.fixed.scenario.domain;
+        let axes = if self.fixed.scenario.dimensions == 2 { 2 } else { 3 };
+        for (direction, range) in directions.iter().zip(ranges) {
+            let mut free = longest;
+            for axis in 0..axes {
+                let rate = direction[axis];
+                let gap = if rate > 0.0 { domain.max_m[axis] - origin[axis] } else { origin[axis] - domain.min_m[axis] };
+                if rate != 0.0 {
+                    free = free.min(gap.max(0.0) / rate.abs());
+                }
+            }
+            free = free.min(self.spheres.range(origin, *direction, &scratch.spheres));
+            free = free.min(self.discs.range(origin, *direction, &scratch.discs));
+            for solid in &self.solids {
+                free = solid.range(origin, *direction, free);
+            }
+            *range = self.fixed.floor.range(origin, *direction, free, &scratch.floor);
+        }
+    }
+
+    /// Whether another map change will change anything.
+    pub fn can_change(&self) -> bool {
+        match &self.fixed.scenario.change {
+            None => false,
+            Some(Change::Table(table)) => self.changes.len() < table.phases.len(),
+            Some(Change::Redraw(_)) => true,
+        }
+    }
+
+    /// Changes the map, as when a vehicle at `vehicle_m` has travelled the change distance. Says whether
+    /// anything was left to change.
+    pub fn apply_change(&mut self, vehicle_m: Vec3) -> bool {
+        if !self.can_change() {
+            return false;
+        }
+        let fixed = Arc::clone(&self.fixed);
+        match &fixed.scenario.change {
+            Some(Change::Table(table)) => {
+                let phase = &table.phases[self.changes.len()];
+                self.move_obstacles(vehicle_m, |i, _| phase.obstacles_m[i]);
+                for (eddy, centre) in self.eddies.iter_mut().zip(&phase.vortices_m) {
+                    eddy.base = [centre[0], centre[1], 0.0];
+                }
+            }
+            Some(Change::Redraw(redraw)) => self.redraw(redraw, vehicle_m),
+            None => {}
+        }
+        self.changes.push(ChangeEvent { time_s: self.time_s, vehicle_m });
+        self.refresh();
+        true
+    }
+
+    /// Gives each obstacle a new base, unless that would come too near.
+    fn move_obstacles(&mut self, vehicle_m: Vec3, mut target: impl FnMut(usize, Vec3) -> Vec3) {
+        let fixed = Arc::clone(&self.fixed);
+        let (margin, hold) = fixed.scenario.change.as_ref().map_or((0.0, Hold::All), Change::hold);
+        let mission = &fixed.scenario.missions[self.mission];
+        let protected = [vehicle_m, mission.start_m, mission.goal_m];
+        let protected = match hold {
+            Hold::All => &protected[..],
+            Hold::Vehicle => &protected[..1],
+        };
+        for (i, obstacle) in fixed.scenario.obstacles.iter().enumerate() {
+            let old = self.place(self.bodies[i]);
+            let new = target(i, old);
+            let near = |point: &Vec3| {
+                let point = if obstacle.is_flat() { [point[0], point[1], new[2]] } else { *point };
+                distance(new, point) < obstacle.extent_m() + margin
+            };
+            self.bodies[i].base = if protected.iter().any(near) { old } else { new };
+        }
+    }
+
+    fn redraw(&mut self, redraw: &Redraw, vehicle_m: Vec3) {
+        let fixed = Arc::clone(&self.fixed);
+        let domain = &fixed.scenario.domain;
+        let mut stream = Stream::new(self.seed, Purpose::Change, self.changes.len() as u32 + 1);
+        let axes = usize::from(fixed.scenario.dimensions);
+        self.move_obstacles(vehicle_m, |i, old| {
+            let mut new = old;
+            let free = if fixed.scenario.obstacles[i].is_flat() { 2 } else { axes };
+            for axis in 0..free {
+                let step = stream.normal(0.0, redraw.obstacle_step_m);
+                new[axis] = (old[axis] + step).clamp(domain.min_m[axis], domain.max_m[axis]);
+            }
+            new
+        });
+        if let Some(draw) = &redraw.vortices {
+            let place = |eddy: &mut Body, centre: Vec2| eddy.base = [centre[0], centre[1], 0.0];
+            let (low, high) = (domain.min_m, domain.max_m);
+            for (i, eddy) in self.eddies.iter_mut().enumerate() {
+                let (centre, sign) = draw.sample(&mut stream, [low[0], low[1]], [high[0], high[1]]);
+                place(eddy, centre);
+                self.vortices.place(i, centre);
+                self.vortices.spin(i, sign * self.vortices.circulation(i).abs());
+            }
+            if let Some(peak) = draw.peak_speed_mps {
+                scale_to_peak(&mut self.vortices, peak);
+            }
+        }
+    }
+}
+
+impl VortexDraw {
+    /// Draws a centre in the box (low, high) and the sign of a circulation.
+    pub fn sample(&self, stream: &mut Stream, low: Vec2, high: Vec2) -> (Vec2, f64) {
+        let mut along = |normal: &Option<Vec2>, low: f64, high: f64| match normal {
+            Some([mean, deviation]) => stream.normal(*mean, *deviation).clamp(low, high),
+            None => stream.uniform(low, high),
+        };
+        let centre = [along(&self.x_normal_m, low[0], high[0]), along(&self.y_normal_m, low[1], high[1])];
+        (centre, if self.random_sign { stream.sign() } else { 1.0 })
+    }
+}
+
+/// Scales all circulations so that the fastest summed current on the vortices' rings of greatest speed,
+/// sampled at eight points on each, is `peak` (m/s).
+pub fn scale_to_peak(vortices: &mut VortexField, peak: f64) {
+    let mut fastest2 = 0.0_f64;
+    let diagonal = std::f64::consts::FRAC_1_SQRT_2;
+    for i in 0..vortices.len() {
+        let [x, y] = vortices.centre(i);
+        let ring = crate::currents::RING_RADIUS * vortices.core_radius(i);
+        for (dx, dy) in [
+            (1.0, 0.0),
+            (diagonal, diagonal),
+            (0.0, 1.0),
+            (-diagonal, diagonal),
+            (-1.0, 0.0),
+            (-diagonal, -diagonal),
+            (0.0, -1.0),
+            (diagonal, -diagonal),
+        ] {
+            let [u, v] = vortices.velocity(x + ring * dx, y + ring * dy);
+            fastest2 = fastest2.max(u * u + v * v);
+        }
+    }
+    if fastest2 > 0.0 {
+        let scale = peak / fastest2.sqrt();
+        for i in 0..vortices.len() {
+            vortices.spin(i, scale * vortices.circulation(i));
+        }
+    }
+}
+
+/// Memory that a sonar scan reuses.
+#[derive(Debug, Clone, Default)]
+pub struct Scratch {
+    spheres: Vec<u32>,
+    discs: Vec<u32>,
+    floor: Vec<u32>,
+}
