@@ -65,17 +65,3 @@ fn new_world_of_a_family(bencher: divan::Bencher, family: &str) {
         World::new(generate(family, seed, &Parameters::default()).expect("a family"), seed, 0).expect("a good world")
     });
 }
-
-#[divan::bench]
-fn spheres_only(bencher: divan::Bencher) {
-    let world = paper_world("lfhh-3d-1.toml");
-    let points = points(&world);
-    bencher.counter(ItemsCount::new(POINTS)).bench(|| points.iter().fold(0.0, |s, p| s + world.spheres().clearance(*p)));
-}
-#[divan::bench]
-fn floor_given_spheres(bencher: divan::Bencher) {
-    let world = paper_world("lfhh-3d-1.toml");
-    let points = points(&world);
-    let near: Vec<f64> = points.iter().map(|p| world.spheres().clearance(*p)).collect();
-    bencher.counter(ItemsCount::new(POINTS)).bench(|| points.iter().zip(&near).fold(0.0, |s, (p, n)| s + world.floor().clearance(*p, *n)));
-}

@@ -86,16 +86,20 @@ pub struct Parameters {
     pub vortex_drift_mps: Option<f64>,
 }
 
-/// What a difficulty stands for in a family: current ratio (or ring ratio) and time factor.
+/// What a difficulty stands for: current ratio (paper variant: ring ratio) and time factor, calibrated so
+/// that at `normal` the straight line succeeds in less than 20 %, the sonar rule in less than 80 % and the
+/// snapshot re-planner in more than 90 % of the debiased worlds.
 fn calibration(dimensions: u8, variant: Variant, difficulty: Difficulty) -> (f64, f64) {
     use Difficulty::{Easy, Hard, Normal};
-    match (variant, dimensions, difficulty) {
-        (Variant::Paper, _, Easy) => (0.1, 1.5),
-        (Variant::Paper, _, Normal) => (0.4, 1.5),
-        (Variant::Paper, _, Hard) => (0.7, 1.5),
-        (Variant::Debiased, _, Easy) => (0.2, 1.5),
-        (Variant::Debiased, _, Normal) => (0.6, 1.3),
-        (Variant::Debiased, _, Hard) => (1.0, 1.3),
+    match (variant, difficulty, dimensions) {
+        (Variant::Paper, Easy, _) => (0.1, 1.5),
+        (Variant::Paper, Normal, _) => (0.4, 1.5),
+        (Variant::Paper, Hard, _) => (0.7, 1.5),
+        (Variant::Debiased, Easy, _) => (0.2, 1.5),
+        (Variant::Debiased, Normal, 2) => (0.8, 1.25),
+        (Variant::Debiased, Normal, _) => (0.8, 1.3),
+        (Variant::Debiased, Hard, 2) => (1.2, 1.3),
+        (Variant::Debiased, Hard, _) => (1.2, 1.4),
     }
 }
 

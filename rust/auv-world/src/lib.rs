@@ -8,6 +8,7 @@ pub mod currents;
 pub mod error;
 pub mod families;
 pub mod grid;
+pub mod kinematics;
 pub mod lanes;
 pub mod math;
 pub mod motion;

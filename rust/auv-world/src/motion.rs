@@ -15,6 +15,12 @@ pub fn reflect(start: f64, travel: f64, low: f64, high: f64) -> f64 {
     low + if unfolded <= width { unfolded } else { 2.0 * width - unfolded }
 }
 
+/// Whether, after `travel`, it runs back: it has met the walls an odd number of times.
+pub fn reflects(start: f64, travel: f64, low: f64, high: f64) -> bool {
+    let width = high - low;
+    travel != 0.0 && width > 0.0 && (start - low + travel).rem_euclid(2.0 * width) > width
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -25,6 +31,7 @@ mod tests {
         assert_eq!(reflect(8.0, 4.0, 0.0, 10.0), 8.0);
         assert_eq!(reflect(8.0, -9.0, 0.0, 10.0), 1.0);
         assert_eq!(reflect(8.0, 0.0, 0.0, 10.0), 8.0);
+        assert!(reflects(8.0, 4.0, 0.0, 10.0) && !reflects(8.0, 1.0, 0.0, 10.0));
     }
 
     proptest! {

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::currents::{GriddedField, VortexField, jet_velocity};
 use crate::error::WorldError;
-use crate::math::{Vec2, Vec3, distance};
-use crate::motion::reflect;
+use crate::math::{Vec2, Vec3, distance, norm};
+use crate::motion::{reflect, reflects};
 use crate::obstacles::{Discs, Solid, Spheres, polygon::Prism};
 use crate::rng::{Purpose, Stream};
 use crate::scenario::{Change, Current, Hold, Jet, Mission, Obstacle, Redraw, Scenario, Seabed, VortexDraw};
@@ -34,6 +34,8 @@ struct Fixed {
     jets: Vec<Jet>,
     uniform: Vec2,
     steady: bool,
+    extents: Vec<f64>,
+    fastest_obstacle: f64,
 }
 
 /// Where an obstacle is kept.
@@ -116,7 +118,7 @@ impl World {
             Some(Seabed::Flat(flat)) => Floor::Flat(flat.depth_m),
             Some(Seabed::Peaks(peaks)) => Floor::Peaks(crate::seabed::PeakFloor::new(peaks)),
             Some(Seabed::Gridded(grid)) => {
-                Floor::Gridded(crate::seabed::GridFloor::new(grid, projection, (low, high)))
+                Floor::Gridded(crate::seabed::GridFloor::new(grid, projection, (low, high), scenario.dimensions == 2))
             }
         };
         let (mut gridded, mut jets, mut uniform) = (Vec::new(), Vec::new(), [0.0, 0.0]);
@@ -167,10 +169,13 @@ impl World {
                 }
             });
         }
+        spheres.arrange();
         let steady = gridded.iter().all(GriddedField::is_steady)
             && jets.iter().all(|jet| jet.time_scale_s.is_none())
             && bodies.iter().chain(&eddies).all(|body| body.velocity == [0.0; 3]);
-        let fixed = Arc::new(Fixed { scenario, floor, gridded, jets, uniform, steady });
+        let extents = scenario.obstacles.iter().map(Obstacle::extent_m).collect();
+        let fastest_obstacle = bodies.iter().map(|body| norm(body.velocity)).fold(0.0, f64::max);
+        let fixed = Arc::new(Fixed { scenario, floor, gridded, jets, uniform, steady, extents, fastest_obstacle });
         Self {
             fixed,
             seed: 0,
@@ -265,8 +270,29 @@ impl World {
     }
 
     /// Position (m) of obstacle `i` at the present time.
+    #[inline]
     pub fn obstacle_position(&self, i: usize) -> Vec3 {
-        self.place(self.bodies[i])
+        if self.fixed.fastest_obstacle == 0.0 { self.bodies[i].base } else { self.place(self.bodies[i]) }
+    }
+
+    /// Velocity (m/s) of obstacle `i` at the present time, turned about by the walls it has met.
+    pub fn obstacle_velocity(&self, i: usize) -> Vec3 {
+        let (body, elapsed, domain) = (self.bodies[i], self.since_change(), &self.fixed.scenario.domain);
+        std::array::from_fn(|axis| {
+            let (low, high) = (domain.min_m[axis], domain.max_m[axis]);
+            let away = reflects(body.base[axis], body.velocity[axis] * elapsed, low, high);
+            if away { -body.velocity[axis] } else { body.velocity[axis] }
+        })
+    }
+
+    /// Radius (m) of a ball or circle that holds each obstacle.
+    pub fn extents(&self) -> &[f64] {
+        &self.fixed.extents
+    }
+
+    /// Speed of the fastest obstacle (m/s).
+    pub fn fastest_obstacle_mps(&self) -> f64 {
+        self.fixed.fastest_obstacle
     }
 
     /// Moves everything to `time_s` (s). Between map changes this may go forwards and backwards.
@@ -302,6 +328,7 @@ impl World {
                 Slot::Solid(slot) => self.solids[slot].place(position),
             }
         }
+        self.spheres.arrange();
         for i in 0..self.eddies.len() {
             let position = self.place(self.eddies[i]);
             self.vortices.place(i, [position[0], position[1]]);

@@ -1,6 +1,6 @@
 //! Lamb-Oseen vortices (LFHH eq. 3-5), as a structure of arrays.
 
-use wide::{CmpLt as _, f64x4};
+use wide::f64x4;
 
 use crate::lanes::{Column, exp};
 use crate::math::Vec2;
@@ -92,8 +92,8 @@ impl VortexField {
 fn falloff(r2: f64x4, inverse_core2: f64x4) -> f64x4 {
     let s = r2 * inverse_core2;
     let central = s.simd_lt(f64x4::splat(1e-8));
-    let factor = (f64x4::ONE - exp(-s)) / central.blend(f64x4::ONE, r2);
-    central.blend(inverse_core2, factor)
+    let factor = (f64x4::ONE - exp(-s)) / central.select(f64x4::ONE, r2);
+    central.select(inverse_core2, factor)
 }
 
 #[cfg(test)]

@@ -1,17 +1,32 @@
 //! Spheres and discs as structures of arrays: exact signed distances, several lanes at once.
 
-use wide::{CmpLt as _, f64x4};
+use wide::f64x4;
 
-use crate::lanes::{Column, least};
+use crate::lanes::{Column, LANES, least};
 use crate::math::{Vec2, Vec3};
 
 /// Balls at one time.
 #[derive(Debug, Clone, Default)]
 pub struct Spheres {
-    x: Column,
-    y: Column,
-    z: Column,
-    radius: Column,
+    x: Vec<f64>,
+    y: Vec<f64>,
+    z: Vec<f64>,
+    radius: Vec<f64>,
+    /// The balls in order of y, so that a query can begin with its neighbours.
+    order: Vec<u32>,
+    slabs: Vec<Slab>,
+}
+
+/// Four balls that follow each other along y.
+#[derive(Debug, Clone, Copy)]
+struct Slab {
+    x: f64x4,
+    y: f64x4,
+    z: f64x4,
+    radius: f64x4,
+    /// All of them lie between these y.
+    low: f64,
+    high: f64,
 }
 
 /// Vertical cylinders through all depths at one time.
@@ -49,17 +64,43 @@ fn chord(centre_dot: f64, centre2: f64, radius: f64, square: f64) -> f64 {
 }
 
 impl Spheres {
-    /// Appends a ball.
+    /// Appends a ball; [`Spheres::arrange`] must follow before a query.
     pub fn push(&mut self, centre: Vec3, radius: f64) {
-        self.x.push(centre[0], FAR);
-        self.y.push(centre[1], FAR);
-        self.z.push(centre[2], FAR);
-        self.radius.push(radius, 0.0);
+        self.order.push(self.x.len() as u32);
+        self.x.push(centre[0]);
+        self.y.push(centre[1]);
+        self.z.push(centre[2]);
+        self.radius.push(radius);
     }
 
-    /// Moves ball `i`.
+    /// Moves ball `i`; [`Spheres::arrange`] must follow before a query.
     pub fn place(&mut self, i: usize, centre: Vec3) {
         (self.x[i], self.y[i], self.z[i]) = (centre[0], centre[1], centre[2]);
+    }
+
+    /// Puts the balls in order after some were placed.
+    pub fn arrange(&mut self) {
+        let y = &self.y;
+        // Nearly in order already: a stable sort takes one pass.
+        self.order.sort_by(|a, b| y[*a as usize].total_cmp(&y[*b as usize]));
+        self.slabs.clear();
+        for four in self.order.chunks(LANES) {
+            let column = |values: &[f64], filler: f64| {
+                f64x4::new(std::array::from_fn(|lane| four.get(lane).map_or(filler, |i| values[*i as usize])))
+            };
+            let reach = |sign: f64| {
+                let ends = four.iter().map(|i| sign * self.y[*i as usize] + self.radius[*i as usize]);
+                sign * ends.fold(f64::NEG_INFINITY, f64::max)
+            };
+            self.slabs.push(Slab {
+                x: column(&self.x, FAR),
+                y: column(&self.y, FAR),
+                z: column(&self.z, FAR),
+                radius: column(&self.radius, 0.0),
+                low: reach(-1.0),
+                high: reach(1.0),
+            });
+        }
     }
 
     /// Number of balls.
@@ -81,11 +122,17 @@ impl Spheres {
     #[inline]
     pub fn clearance(&self, point: Vec3) -> f64 {
         let [x, y, z] = point.map(f64x4::splat);
-        let columns = self.x.chunks().zip(self.y.chunks()).zip(self.z.chunks()).zip(self.radius.chunks());
-        columns.fold(f64::INFINITY, |nearest, (((cx, cy), cz), radius)| {
-            let (dx, dy, dz) = (x - cx, y - cy, z - cz);
-            nearer(dx * dx + dy * dy + dz * dz, radius, nearest)
-        })
+        let look = |nearest: f64, slab: &Slab| {
+            if slab.low - point[1] >= nearest || point[1] - slab.high >= nearest {
+                return nearest;
+            }
+            let (dx, dy, dz) = (x - slab.x, y - slab.y, z - slab.z);
+            nearer(dx * dx + dy * dy + dz * dz, slab.radius, nearest)
+        };
+        let middle = self.slabs.partition_point(|slab| slab.high < point[1]);
+        let (before, after) = self.slabs.split_at(middle);
+        let nearest = after.iter().fold(f64::INFINITY, look);
+        before.iter().rev().fold(nearest, look)
     }
 
     /// Appends the balls nearer than `longest`.
@@ -199,6 +246,9 @@ mod tests {
                 spheres.push([1500.0 * t - 4000.0, 700.0 * t, 500.0 * t - 900.0], 400.0 + 100.0 * t);
                 discs.push([1500.0 * t - 4000.0, 700.0 * t], 400.0 + 100.0 * t);
             }
+            spheres.arrange();
+            let each = (0..7).map(|i| { let (c, r) = spheres.get(i); crate::math::distance(p, c) - r });
+            prop_assert_eq!(spheres.clearance(p), each.fold(f64::INFINITY, f64::min));
             let length = crate::math::norm(d);
             prop_assume!(length > 0.1);
             let d = [d[0] / length, d[1] / length, d[2] / length];

@@ -58,9 +58,7 @@ impl Floor {
             Self::None => longest,
             Self::Flat(depth) => plane_range(depth - origin[2], direction[2]).min(longest),
             Self::Peaks(peaks) => peaks.range(origin, direction, longest, candidates),
-            Self::Gridded(grid) => {
-                crate::obstacles::march(origin, direction, longest, |point| grid.clearance(point))
-            }
+            Self::Gridded(grid) => grid.range(origin, direction, longest),
         }
     }
 }

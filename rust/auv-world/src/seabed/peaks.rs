@@ -5,15 +5,12 @@
 //! greatest of |h u' exp(-u'^2 / 2)| k for u' in [u - k t, u], and a point `gap` above the peak is at
 //! least gap / sqrt(1 + slope^2) away from it.
 
-use wide::{CmpLt as _, f64x4};
+use wide::f64x4;
 
 use super::plane_range;
-use crate::lanes::{Column, LANES};
+use crate::lanes::{Column, exp as exp4, least};
 use crate::math::{Vec3, add_scaled, exp};
 use crate::scenario::{Peak, Peaks};
-
-/// exp(-1/2): what is left of a peak where it is steepest, at u = 1.
-const STEEPEST: f64 = 0.606_530_659_712_633_4;
 
 /// At most exp(u^2 / 2), without an exponential: the start of its series, and 1 for u < 0.
 #[inline(always)]
@@ -21,6 +18,20 @@ fn falls_by(u: f64x4) -> f64x4 {
     let u = u.fast_max(f64x4::ZERO);
     let s = f64x4::HALF * u * u;
     f64x4::ONE + s * (f64x4::ONE + s * (f64x4::HALF + s * f64x4::splat(1.0 / 6.0)))
+}
+
+/// A lower bound of the distance to each of four peaks, or anything not less than `nearest` where they are
+/// farther than that, from a point `above` the flat floor at `u`; minus the gap inside.
+#[inline]
+fn distance_bound(height: f64x4, steepness: f64x4, u: f64x4, above: f64, nearest: f64) -> f64x4 {
+    let here = height * exp4(f64x4::splat(-0.5) * u * u);
+    let gap = f64x4::splat(above) - here;
+    let low = (u - steepness * gap.fast_min(f64x4::splat(nearest.max(0.0)))).fast_max(f64x4::ZERO);
+    // |d/du| of a peak is greatest at u = 1: there if it lies in [low, u], else at the nearer end.
+    let steepest = low.fast_max(f64x4::ONE.fast_min(u));
+    let slope = steepness * height * steepest * exp4(f64x4::splat(-0.5) * steepest * steepest);
+    let distance = gap / (f64x4::ONE + slope * slope).sqrt();
+    gap.simd_le(f64x4::ZERO).select(gap, distance)
 }
 
 /// Peaks as a structure of arrays.
@@ -81,42 +92,18 @@ impl PeakFloor {
         let (x, y) = (f64x4::splat(point[0]), f64x4::splat(point[1]));
         let shapes = self.along_x.chunks().zip(self.along_y.chunks()).zip(self.steepness.chunks());
         let peaks = self.x.chunks().zip(self.y.chunks()).zip(self.height.chunks()).zip(shapes);
-        for (chunk, (((px, py), height), ((ax, ay), steepness))) in peaks.enumerate() {
+        for (((px, py), height), ((ax, ay), steepness)) in peaks {
             // Most peaks cannot rise to within `best` of the point: sort them out four at once. Padding
             // has no height, so it never does.
             let (dx, dy) = (x - px, y - py);
             let u = (ax * dx * dx + ay * dy * dy).sqrt();
             let room = f64x4::splat((above - best).max(0.0));
-            let reaches = (room * falls_by(u - steepness * f64x4::splat(best.max(0.0)))).simd_lt(height);
-            let mut left = reaches.to_bitmask();
-            while left != 0 {
-                let lane = left.trailing_zeros() as usize;
-                left &= left - 1;
-                best = self.peak_clearance(LANES * chunk + lane, u.to_array()[lane], above, best);
+            let rises = (room * falls_by(u - steepness * f64x4::splat(best.max(0.0)))).simd_lt(height);
+            if rises.any() {
+                best = least(distance_bound(height, steepness, u, above, best), best);
             }
         }
         best
-    }
-
-    /// The lesser of `nearest` and a lower bound of the distance to peak `i`, from a point `above` the
-    /// flat floor at `u`.
-    #[inline]
-    fn peak_clearance(&self, i: usize, u: f64, above: f64, nearest: f64) -> f64 {
-        let (height, k) = (self.height[i], self.steepness[i]);
-        let here = height * exp(-0.5 * u * u);
-        let gap = above - here;
-        if gap <= 0.0 {
-            return gap.min(nearest);
-        }
-        let low = (u - k * gap.min(nearest.max(0.0))).max(0.0);
-        let slope = k * if low > 1.0 {
-            height * low * exp(-0.5 * low * low)
-        } else if u < 1.0 {
-            here * u
-        } else {
-            height * STEEPEST
-        };
-        (gap / (1.0 + slope * slope).sqrt()).min(nearest)
     }
 
     /// Appends the peaks that a beam of at most `longest` metres from `origin` can meet.
@@ -152,7 +139,8 @@ impl PeakFloor {
             }
             range = crate::obstacles::march(origin, direction, range, |point| {
                 let u = self.u2(i, point[0], point[1]).sqrt();
-                self.peak_clearance(i, u, self.floor_depth - point[2], f64::INFINITY)
+                let [height, steepness, u] = [self.height[i], self.steepness[i], u].map(f64x4::splat);
+                distance_bound(height, steepness, u, self.floor_depth - point[2], f64::INFINITY).to_array()[0]
             });
         }
         range
@@ -189,7 +177,6 @@ mod tests {
             let u = 0.01 * f64::from(i);
             assert!(falls_by(f64x4::splat(u)).to_array()[0] <= libm::exp(0.5 * u.max(0.0) * u.max(0.0)));
         }
-        assert!((STEEPEST - exp(-0.5)).abs() < 1e-15);
     }
 
     #[test]

@@ -1,0 +1,7 @@
+"""Gymnasium environments; each class's docstring is its specification."""
+
+from auvgym.envs.dynamic_2d import AUVDynamic2DEnv
+from auvgym.envs.dynamic_3d import AUVDynamic3DEnv
+from auvgym.envs.waypoint import AUVEnv
+
+__all__ = ["AUVDynamic2DEnv", "AUVDynamic3DEnv", "AUVEnv"]

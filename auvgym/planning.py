@@ -1,0 +1,222 @@
+"""Plans: from a world to waypoints, and what any path costs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from auvgym import _core
+from auvgym._names import unknown
+from auvgym.scenario import check_seed, parameters_json
+from auvgym.world import World
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """What a planner found.
+
+    Attributes:
+        planner: who planned.
+        waypoints: start, waypoints, goal; (n, 3) float64, m.
+        feasible: whether the path is allowed everywhere; no way is an answer, not an error.
+        cost: the terms of the planner's cost and their "total", as :func:`path_cost` gives them.
+        evaluations: counted budget: fitness evaluations, or nodes settled by grid planners.
+        history: best total cost against evaluations so far, (m, 2) float64.
+        window: sections of the last planning window, where one was used.
+    """
+
+    planner: str
+    waypoints: Array
+    feasible: bool
+    cost: dict[str, float]
+    evaluations: int
+    history: Array = field(repr=False)
+    window: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Phase:
+    """One phase of the papers' protocol: a plan after a map change.
+
+    Attributes:
+        cost: total cost of the window's path (LFHH's F_cost).
+        feasible: whether it is allowed everywhere.
+        evaluations: fitness evaluations spent.
+        window: sections of the window that was planned in the end.
+        position: where the vehicle was, (3,) m.
+    """
+
+    cost: float
+    feasible: bool
+    evaluations: int
+    window: int
+    position: Array
+
+
+def list_planners() -> list[str]:
+    """Names of the planners."""
+    return list(_core.list_planners())
+
+
+def plan(
+    world: World,
+    planner: str = "lfhh",
+    *,
+    start: npt.ArrayLike | None = None,
+    goal: npt.ArrayLike | None = None,
+    seed: int = 0,
+    **parameters: Any,
+) -> Plan:
+    """Plan a path through a world as it is now.
+
+    Args:
+        world: the world, at its present time.
+        planner: one of :func:`list_planners`.
+        start: (3,) m; the mission's start if None.
+        goal: (3,) m; the mission's goal if None.
+        seed: of the planner's random stream; the same seed gives the same plan.
+        **parameters: the planner's own, see ``docs/planners.md``.
+
+    Returns:
+        The plan; ``plan.feasible`` says whether there is a way.
+
+    Raises:
+        PlanningError: for an unknown planner or parameter, or a start or goal that is not finite
+            or outside the box, naming it, its value and what was allowed.
+        KeyboardInterrupt: on Ctrl-C, within a fraction of a second.
+    """
+    _check_planner(planner)
+    return _plan(
+        _core.plan(
+            world._core,
+            planner,
+            _point("start", start),
+            _point("goal", goal),
+            check_seed(seed),
+            _parameters(parameters),
+        )
+    )
+
+
+def replan(
+    world: World,
+    path: npt.ArrayLike,
+    position: npt.ArrayLike,
+    planner: str = "lfhh",
+    *,
+    seed: int = 0,
+    window: int = 20,
+    **parameters: Any,
+) -> Plan:
+    """Re-plan the part of a global path that lies in the planning window ahead of the vehicle.
+
+    The window starts with ``window`` sections and grows by one until a feasible path is found or
+    it reaches the goal (LFHH, section IV-E).
+
+    Args:
+        world: the world as it is now.
+        path: the global path so far, (n, 3) m.
+        position: where the vehicle is, (3,) m.
+        planner: a planner on sections.
+        seed: of the planner's random stream.
+        window: sections of the first window.
+        **parameters: the planner's own.
+
+    Returns:
+        The plan; its waypoints are the new global path from the vehicle to the goal.
+
+    Raises:
+        PlanningError, KeyboardInterrupt: as :func:`plan`.
+    """
+    _check_planner(planner)
+    place = _point("position", position)
+    assert place is not None
+    found = _core.replan(
+        world._core, _path(path), place, planner, check_seed(seed), window, _parameters(parameters)
+    )
+    return _plan(found)
+
+
+def path_cost(
+    world: World, waypoints: npt.ArrayLike, cost: str = "lfhh", **options: Any
+) -> dict[str, float]:
+    """The terms of a cost for any path through a world as it is now.
+
+    Args:
+        world: the world.
+        waypoints: (n, 3) m, n >= 2.
+        cost: "lfhh" (eq. 6-10: length, curvature, block, current), "time" or "energy" (through the
+            real current).
+        **options: readings of the cost, see ``docs/planners.md``.
+
+    Returns:
+        Each term by name, their "total", and "feasible" (1.0 or 0.0).
+
+    Raises:
+        PlanningError: for an unknown cost or option, or a path that is not allowed.
+    """
+    return dict(_core.path_cost(world._core, _path(waypoints), cost, _parameters(options)))
+
+
+def run_phases(
+    world: World, planner: str = "lfhh", *, seed: int = 0, **parameters: Any
+) -> list[Phase]:
+    """The papers' protocol: plan, travel, re-plan in a window at each change of the map's table.
+
+    Args:
+        world: a world at time 0 whose scenario has a table of changes and sections.
+        planner: a planner on sections.
+        seed: of the planner's random streams.
+        **parameters: the planner's own.
+
+    Returns:
+        One phase for the first plan and one for each change; the papers report the mean cost
+        over the latter.
+
+    Raises:
+        PlanningError, KeyboardInterrupt: as :func:`plan`.
+    """
+    _check_planner(planner)
+    phases = _core.run_phases(world._core, planner, check_seed(seed), _parameters(parameters))
+    return [Phase(*phase[:4], np.array(phase[4])) for phase in phases]
+
+
+def _plan(found: _core.FoundPlan) -> Plan:
+    return Plan(*found)
+
+
+def _check_planner(planner: str) -> None:
+    if planner not in list_planners():
+        raise _core.PlanningError(unknown("planner", planner, list_planners()))
+
+
+def _parameters(parameters: dict[str, Any]) -> str:
+    try:
+        return parameters_json(parameters)
+    except ValueError as error:
+        raise _core.PlanningError(str(error)) from error
+
+
+def _point(name: str, point: npt.ArrayLike | None) -> tuple[float, float, float] | None:
+    if point is None:
+        return None
+    try:
+        x, y, z = np.asarray(point, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise _core.PlanningError(f"{name} = {point!r}: must be three numbers, m") from error
+    return float(x), float(y), float(z)
+
+
+def _path(path: npt.ArrayLike) -> Array:
+    try:
+        array = np.ascontiguousarray(path, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise _core.PlanningError(f"a path must be numbers of shape (n, 3): {error}") from error
+    if array.ndim != 2 or array.shape[1] != 3 or len(array) < 2:
+        raise _core.PlanningError(f"a path has shape {array.shape}: must be (n, 3) with n >= 2")
+    return array

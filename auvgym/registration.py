@@ -1,0 +1,18 @@
+"""The environments that Gymnasium knows after ``import auvgym``."""
+
+from __future__ import annotations
+
+import gymnasium
+
+#: id -> class, both part of the public interface.
+ENVIRONMENTS = {
+    "AUVDynamic2D-v0": "auvgym.envs:AUVDynamic2DEnv",
+    "AUVDynamic3D-v0": "auvgym.envs:AUVDynamic3DEnv",
+}
+
+
+def register_environments() -> None:
+    """Register every environment that is not registered yet."""
+    for name, entry_point in ENVIRONMENTS.items():
+        if name not in gymnasium.registry:
+            gymnasium.register(id=name, entry_point=entry_point)

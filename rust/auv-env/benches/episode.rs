@@ -1,0 +1,78 @@
+//! What an environment step costs on one core: a whole leg of the default families, and its parts.
+
+use auv_env::{Source, observation};
+use auv_world::families::Parameters;
+use auv_world::rng::{Purpose, Stream};
+use divan::counter::ItemsCount;
+
+fn main() {
+    divan::main();
+}
+
+fn source(family: &str) -> Source {
+    Source::family(family, Parameters::default()).expect("a family")
+}
+
+/// Random waypoints ahead; a new episode whenever one ends. One item = one environment step.
+#[divan::bench(args = ["lfhh-2d", "lfhh-3d"])]
+fn waypoint_steps(bencher: divan::Bencher, family: &str) {
+    let source = source(family);
+    let mut episode = source.episode(0).expect("a world");
+    let mut observation = vec![0.0; observation::length(episode.world().scenario().dimensions)];
+    let mut stream = Stream::new(3, Purpose::Planner, 0);
+    let mut seed = 0;
+    bencher.counter(ItemsCount::new(100_usize)).bench_local(|| {
+        for _ in 0..100 {
+            let action: Vec<f32> = (0..episode.action_len()).map(|_| stream.uniform(-1.0, 1.0) as f32).collect();
+            if episode.step(&action).is_err() {
+                seed += 1;
+                episode = source.episode(seed).expect("a world");
+            }
+            episode.observe(&mut observation);
+        }
+    });
+}
+
+/// Straight legs in one world. One item = one physics tick.
+#[divan::bench(args = ["lfhh-2d", "lfhh-3d"])]
+fn ticks(bencher: divan::Bencher, family: &str) {
+    let mut episodes = (0..64).map(|seed| source(family).episode(seed).expect("a world")).cycle();
+    let legs = |episode: &mut auv_env::Episode| {
+        let action = vec![0.9; episode.action_len()];
+        while episode.step(&action).is_ok() {}
+        episode.state().ticks
+    };
+    let mut total = 0;
+    let mut probe = episodes.clone();
+    for _ in 0..64 {
+        total += probe.next().map_or(0, |mut episode| legs(&mut episode));
+    }
+    bencher.counter(ItemsCount::new(total)).bench_local(|| {
+        for _ in 0..64 {
+            if let Some(mut episode) = episodes.next() {
+                legs(&mut episode);
+            }
+        }
+    });
+}
+
+#[divan::bench(args = ["lfhh-2d", "lfhh-3d"])]
+fn observe(bencher: divan::Bencher, family: &str) {
+    let mut episode = source(family).episode(1).expect("a world");
+    let mut observation = vec![0.0; observation::length(episode.world().scenario().dimensions)];
+    for _ in 0..8 {
+        let action = episode.action_for([10_000.0, 20_000.0, 10_000.0]);
+        let _ended = episode.step(&action[..episode.action_len()]);
+    }
+    bencher.bench_local(|| episode.observe(&mut observation));
+}
+
+#[divan::bench(args = ["lfhh-2d", "lfhh-3d"])]
+fn reset(bencher: divan::Bencher, family: &str) {
+    let source = source(family);
+    let mut seed = 0;
+    bencher.bench_local(|| {
+        seed += 1;
+        source.episode(seed).expect("a world")
+    });
+}

@@ -1,0 +1,17 @@
+//! Episodes in dynamic ocean worlds: a vehicle is steered from waypoint to waypoint, sees what its
+//! sensors see, and is rewarded for arriving.
+//!
+//! An [`episode::Episode`] is a pure function of its world and the actions so far.
+
+pub mod episode;
+pub mod error;
+pub mod frame;
+pub mod observation;
+pub mod reward;
+pub mod sonar;
+pub mod source;
+pub mod vehicle;
+
+pub use episode::{Episode, Outcome};
+pub use error::EnvError;
+pub use source::Source;

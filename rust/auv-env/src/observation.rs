@@ -1,0 +1,188 @@
+//! What an agent sees: a flat vector of 32-bit floats in named blocks, each within its stated bounds.
+
+use auv_world::World;
+use auv_world::math::{Vec3, add_scaled, norm, sub};
+
+use crate::episode::Episode;
+use crate::frame::Frame;
+
+/// Obstacles described one by one.
+pub const NEAREST: usize = 3;
+
+/// A block of the observation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Block {
+    /// Its name.
+    pub name: &'static str,
+    /// Where it starts.
+    pub start: usize,
+    /// Its length.
+    pub len: usize,
+    /// Least value.
+    pub low: f32,
+    /// Greatest value.
+    pub high: f32,
+    /// What it says, in which unit.
+    pub meaning: &'static str,
+}
+
+/// Blocks in order: name, length in 2-D, length in 3-D, bounds, meaning.
+const BLOCKS: [(&str, usize, usize, f32, f32, &str); 16] = [
+    ("goal_distance", 1, 1, -1.0, 1.0, "2 d / d0 - 1: distance to the goal on the map over the one at the start"),
+    ("goal_near", 1, 1, 0.0, 1.0, "distance to the goal on the map over the sonar range"),
+    ("position", 2, 2, -1.0, 1.0, "x and y in the box, -1 at its lower and 1 at its upper walls"),
+    ("time_left", 1, 1, 0.0, 1.0, "time left over the time limit"),
+    ("energy_left", 1, 1, 0.0, 1.0, "energy left over the energy budget"),
+    ("change_distance", 1, 1, 0.0, 1.0, "path length since the last map change over that between changes"),
+    ("change_time", 1, 1, 0.0, 1.0, "time since the last map change over that of the change distance at full speed"),
+    ("heading", 2, 2, -1.0, 1.0, "forward and left of the motion through water (unit vector)"),
+    ("frame", 2, 2, -1.0, 1.0, "x and y of the unit vector towards the goal"),
+    ("depth", 0, 1, -1.0, 1.0, "depth in the box, -1 at its top and 1 at its bottom"),
+    ("altitude", 0, 1, 0.0, 2.0, "height above the sea floor over the sonar range"),
+    ("goal_depth", 0, 1, -1.0, 1.0, "height of the goal above the vehicle over the sonar range"),
+    ("climb", 0, 1, -1.0, 1.0, "upward part of the heading (unit vector)"),
+    (
+        "current",
+        8,
+        8,
+        -2.0,
+        2.0,
+        "forward and left of the current over the vehicle's speed: here, and at (1, 0), (0.6, 0.8), (0.6, -0.8) reach",
+    ),
+    ("sonar", 24, 52, 0.0, 1.0, "1 - range / sonar range of each beam"),
+    (
+        "obstacles",
+        15,
+        21,
+        -1.0,
+        1.0,
+        "three nearest within sonar range, each: centre from the vehicle over the sonar range (forward, left[, up]), \
+         extent over the sonar range, velocity over the vehicle's speed (forward, left[, up]); zeros if there is none",
+    ),
+];
+
+/// The blocks of an observation in 2 or 3 dimensions.
+pub fn layout(dimensions: u8) -> Vec<Block> {
+    let mut start = 0;
+    BLOCKS
+        .iter()
+        .filter_map(|&(name, flat, deep, low, high, meaning)| {
+            let len = if dimensions == 2 { flat } else { deep };
+            let block = Block { name, start, len, low, high, meaning };
+            start += len;
+            (len > 0).then_some(block)
+        })
+        .collect()
+}
+
+/// Length of an observation.
+pub fn length(dimensions: u8) -> usize {
+    BLOCKS.iter().map(|block| if dimensions == 2 { block.1 } else { block.2 }).sum()
+}
+
+/// Writes values one after another, each clipped to the bounds of its block.
+struct Writer<'a> {
+    values: &'a mut [f32],
+    next: usize,
+}
+
+impl Writer<'_> {
+    #[inline]
+    fn put(&mut self, value: f64, low: f64, high: f64) {
+        self.values[self.next] = value.clamp(low, high) as f32;
+        self.next += 1;
+    }
+}
+
+/// An obstacle within sonar range.
+#[derive(Debug, Clone, Copy)]
+struct Contact {
+    gap: f64,
+    offset: Vec3,
+    index: usize,
+}
+
+/// Fills `values` with what the vehicle sees now.
+pub(crate) fn observe(episode: &Episode, ranges: &[f64], values: &mut [f32]) {
+    let (world, state) = (episode.world(), episode.state());
+    let (domain, flight) = (&world.scenario().domain, &world.scenario().episode);
+    let (position, goal) = (state.position, world.mission().goal_m);
+    let deep = world.scenario().dimensions == 3;
+    let frame = Frame::towards(position, goal);
+    let (speed, sonar_range) = (world.scenario().vehicle.speed_mps, flight.sonar_range_m);
+    let distance = norm([goal[0] - position[0], goal[1] - position[1], 0.0]);
+    let inside = |axis: usize| {
+        2.0 * (position[axis] - domain.min_m[axis]) / (domain.max_m[axis] - domain.min_m[axis]) - 1.0
+    };
+    let mut out = Writer { values, next: 0 };
+
+    out.put(2.0 * distance / episode.limits().distance_m - 1.0, -1.0, 1.0);
+    out.put(distance / sonar_range, 0.0, 1.0);
+    out.put(inside(0), -1.0, 1.0);
+    out.put(inside(1), -1.0, 1.0);
+    out.put(1.0 - state.time_s / episode.limits().time_s, 0.0, 1.0);
+    out.put(1.0 - state.energy_j / episode.limits().energy_j, 0.0, 1.0);
+    let every = world.scenario().change.as_ref().map_or(f64::INFINITY, auv_world::scenario::Change::every_m);
+    out.put(state.since_change_m / every, 0.0, 1.0);
+    let last = world.changes().last().map_or(0.0, |change| change.time_s);
+    out.put((state.time_s - last) * speed / every, 0.0, 1.0);
+    let heading = frame.from_world(state.heading);
+    out.put(heading[0], -1.0, 1.0);
+    out.put(heading[1], -1.0, 1.0);
+    out.put(frame.forward[0], -1.0, 1.0);
+    out.put(frame.forward[1], -1.0, 1.0);
+    if deep {
+        out.put(inside(2), -1.0, 1.0);
+        out.put((world.floor_depth(position[0], position[1]) - position[2]) / sonar_range, 0.0, 2.0);
+        out.put((position[2] - goal[2]) / sonar_range, -1.0, 1.0);
+        out.put(heading[2], -1.0, 1.0);
+    }
+    for ahead in [[0.0, 0.0], [1.0, 0.0], [0.6, 0.8], [0.6, -0.8]] {
+        let point = add_scaled(position, flight.reach_m, frame.to_world([ahead[0], ahead[1], 0.0]));
+        let [forward, left] = frame.flat(world.current(point));
+        out.put(forward / speed, -2.0, 2.0);
+        out.put(left / speed, -2.0, 2.0);
+    }
+    for range in ranges {
+        out.put(1.0 - range / sonar_range, 0.0, 1.0);
+    }
+    let axes = if deep { 3 } else { 2 };
+    for contact in nearest(world, position, sonar_range, axes) {
+        let Some(contact) = contact else {
+            for _ in 0..2 * axes + 1 {
+                out.put(0.0, 0.0, 0.0);
+            }
+            continue;
+        };
+        let offset = frame.from_world(contact.offset);
+        let obstacle = &world.scenario().obstacles[contact.index];
+        let velocity = frame.from_world(world.obstacle_velocity(contact.index));
+        offset[..axes].iter().for_each(|v| out.put(v / sonar_range, -1.0, 1.0));
+        out.put(obstacle.extent_m() / sonar_range, 0.0, 1.0);
+        velocity[..axes].iter().for_each(|v| out.put(v / speed, -1.0, 1.0));
+    }
+}
+
+/// The nearest obstacles whose extent reaches into sonar range, nearest first.
+fn nearest(world: &World, position: Vec3, sonar_range: f64, axes: usize) -> [Option<Contact>; NEAREST] {
+    let mut found: [Option<Contact>; NEAREST] = [None; NEAREST];
+    for (index, extent) in world.extents().iter().enumerate() {
+        let mut offset = sub(world.obstacle_position(index), position);
+        if axes == 2 || world.scenario().obstacles[index].is_flat() {
+            offset[2] = 0.0;
+        }
+        let reach = extent + sonar_range;
+        let square = offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2];
+        if square >= reach * reach {
+            continue;
+        }
+        let mut contact = Some(Contact { gap: square.sqrt() - extent, offset, index });
+        for slot in &mut found {
+            let gap = |c: &Option<Contact>| c.map_or(f64::INFINITY, |c| c.gap);
+            if gap(&contact) < gap(slot) {
+                std::mem::swap(slot, &mut contact);
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,7 @@
+//! Planning on a regular grid of nodes: the time that is left to the goal from everywhere.
+
+mod field;
+mod path;
+
+pub use field::{Settings, TimeField};
+pub use path::{GridPath, plan};

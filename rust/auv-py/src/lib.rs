@@ -1,0 +1,31 @@
+//! `auvgym._core`: the engine as Python sees it. Bindings only; the Python package wraps them.
+
+mod episode;
+mod errors;
+mod field;
+mod interrupt;
+mod points;
+mod scenario;
+mod world;
+
+use pyo3::prelude::*;
+
+/// The compiled engine of auvgym.
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use crate::episode::{Episode, Source, observation_layout, sonar_directions};
+    #[pymodule_export]
+    use crate::errors::{ActionError, PlanningError, ScenarioError};
+    #[pymodule_export]
+    use crate::field::TimeField;
+    #[pymodule_export]
+    use crate::scenario::{Scenario, families};
+    #[pymodule_export]
+    use crate::world::World;
+
+    #[pymodule_init]
+    fn init(module: &super::Bound<'_, super::PyModule>) -> super::PyResult<()> {
+        super::PyModuleMethods::add(module, "__version__", env!("CARGO_PKG_VERSION"))
+    }
+}
