@@ -56,7 +56,7 @@ def load(
     ``time``: None = the whole series (one slice = steady); an ISO time (UTC) = from then on; a
     pair of ISO times = from the first to the second, equal ones = that moment, steady.
     ``depth_m``: the depth of start and goal where they give none (default 0, the surface).
-    ``margin_m``: water kept around start and goal; default the larger of 50 km and 0.35 of the
+    ``margin_m``: water kept around start and goal; default the larger of 100 km and half the
     distance between them; the data's edge limits it.
     ``dimensions``: 2 = at one depth, 3 = from the surface to the floor or to ``max_depth_m``.
     ``missing``: water (by the bathymetry) without a current: "fill" = from the nearest node of
@@ -91,7 +91,7 @@ def build(request: Request, *, stacklevel: int = 2) -> dict[str, Any]:
         # An end outside the data is moved to its edge, so that the water nearest to it can be
         # named in the error that follows.
         mission = lay_out(_clamped(start, data), _clamped(goal, data))
-        margin_m = request.margin_m or max(0.35 * mission.distance_m, 50_000.0)
+        margin_m = request.margin_m or max(0.5 * mission.distance_m, 100_000.0)
         sources = whole.crop(mission.window(mission.box(1.1 * margin_m)))
         sea = read_sea(sources, request, start.depth if request.dimensions == 2 else None)
         box, edge_m = map_box(mission, margin_m, sources.extent())

@@ -76,3 +76,19 @@ fn reset(bencher: divan::Bencher, family: &str) {
         source.episode(seed).expect("a world")
     });
 }
+
+/// The sonar alone.
+#[divan::bench(args = ["lfhh-2d", "lfhh-3d"])]
+fn sonar(bencher: divan::Bencher, family: &str) {
+    let mut episode = source(family).episode(1).expect("a world");
+    for _ in 0..8 {
+        let action = episode.action_for([10_000.0, 20_000.0, 10_000.0]);
+        let _ended = episode.step(&action[..episode.action_len()]);
+    }
+    let world = episode.world();
+    let beams = auv_env::sonar::beams(world.scenario().dimensions);
+    let mut ranges = vec![0.0; beams.len()];
+    let mut scratch = auv_world::world::Scratch::default();
+    let position = episode.state().position;
+    bencher.bench_local(|| world.sonar(position, &beams, 5000.0, &mut scratch, &mut ranges));
+}

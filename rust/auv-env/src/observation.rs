@@ -111,9 +111,8 @@ pub(crate) fn observe(episode: &Episode, ranges: &[f64], values: &mut [f32]) {
     let frame = Frame::towards(position, goal);
     let (speed, sonar_range) = (world.scenario().vehicle.speed_mps, flight.sonar_range_m);
     let distance = norm([goal[0] - position[0], goal[1] - position[1], 0.0]);
-    let inside = |axis: usize| {
-        2.0 * (position[axis] - domain.min_m[axis]) / (domain.max_m[axis] - domain.min_m[axis]) - 1.0
-    };
+    let inside =
+        |axis: usize| 2.0 * (position[axis] - domain.min_m[axis]) / (domain.max_m[axis] - domain.min_m[axis]) - 1.0;
     let mut out = Writer { values, next: 0 };
 
     out.put(2.0 * distance / episode.limits().distance_m - 1.0, -1.0, 1.0);

@@ -1,6 +1,6 @@
 //! Where episodes come from: one scenario, or a seeded draw from a family.
 
-use auv_world::families::{Parameters, generate};
+use auv_world::families::{self, Parameters, generate};
 use auv_world::{Scenario, World, WorldError};
 
 use crate::episode::Episode;
@@ -44,7 +44,7 @@ impl Source {
     pub fn world(&self, seed: u64) -> Result<World, WorldError> {
         match self {
             Self::Fixed(world) => Ok(world.fresh(seed)),
-            Self::Family { family, parameters } => World::new(generate(family, seed, parameters)?, seed, 0),
+            Self::Family { family, parameters } => families::world(family, seed, parameters),
         }
     }
 

@@ -10,6 +10,7 @@ const CRAB: f64 = 0.98;
 #[derive(Debug, Clone, Copy)]
 pub struct Helm {
     speed: f64,
+    inverse_speed: f64,
     /// Cosine and sine of the greatest turn in one tick.
     turn: (f64, f64),
     /// Cosine and sine of the steepest pitch.
@@ -34,6 +35,7 @@ impl Helm {
         let pitch = vehicle.pitch_limit_rad.min(std::f64::consts::FRAC_PI_2);
         Self {
             speed: vehicle.speed_mps,
+            inverse_speed: 1.0 / vehicle.speed_mps,
             turn: (libm::cos(turn), libm::sin(turn)),
             pitch: (libm::cos(pitch).max(0.0), libm::sin(pitch)),
             station_radius,
@@ -61,7 +63,8 @@ impl Helm {
             let against = self.limit(heading, [-current[0] / flow, -current[1] / flow, 0.0]);
             return Order { heading: against, speed: flow.min(self.speed) };
         }
-        let direction = sight.map(|component| component / distance);
+        let inverse = 1.0 / distance;
+        let direction = sight.map(|component| component * inverse);
         let along = current[0] * direction[0] + current[1] * direction[1];
         let across: Vec3 = std::array::from_fn(|i| current[i] - along * direction[i]);
         let mut cross = norm(across);
@@ -71,12 +74,22 @@ impl Helm {
             cross = CRAB * self.speed;
         }
         let forward = (self.speed * self.speed - cross * cross).sqrt();
-        let wanted = std::array::from_fn(|i| (direction[i] * forward - across[i] * scale) / self.speed);
+        let (forward, scale) = (forward * self.inverse_speed, scale * self.inverse_speed);
+        let wanted = std::array::from_fn(|i| direction[i] * forward - across[i] * scale);
         Order { heading: self.limit(heading, wanted), speed: self.speed }
     }
 
     /// The heading nearest to `wanted` that yaw rate and pitch limit allow in one tick.
     fn limit(&self, heading: Vec3, wanted: Vec3) -> Vec3 {
+        let level2 = |v: Vec3| v[0] * v[0] + v[1] * v[1];
+        let aligned = heading[0] * wanted[0] + heading[1] * wanted[1];
+        let within =
+            aligned > 0.0 && aligned * aligned >= self.turn.0.max(0.0).powi(2) * level2(heading) * level2(wanted);
+        // The usual case costs neither root nor quotient.
+        if within && wanted[2].abs() < self.pitch.1 { wanted } else { self.turn_and_pitch(heading, wanted) }
+    }
+
+    fn turn_and_pitch(&self, heading: Vec3, wanted: Vec3) -> Vec3 {
         let length = |v: Vec3| (v[0] * v[0] + v[1] * v[1]).sqrt();
         let (had, asked) = (length(heading), length(wanted));
         let mut level = match (had > 1e-9, asked > 1e-9) {
@@ -86,13 +99,11 @@ impl Helm {
         };
         if asked > 1e-9 {
             let goal = [wanted[0] / asked, wanted[1] / asked];
-            let cosine = level[0] * goal[0] + level[1] * goal[1];
-            if cosine >= self.turn.0 {
+            if level[0] * goal[0] + level[1] * goal[1] >= self.turn.0 {
                 level = goal;
             } else {
-                let (c, s) = (self.turn.0, self.turn.1);
                 let left = level[0] * goal[1] - level[1] * goal[0] >= 0.0;
-                let s = if left { s } else { -s };
+                let (c, s) = (self.turn.0, if left { self.turn.1 } else { -self.turn.1 });
                 level = [c * level[0] - s * level[1], s * level[0] + c * level[1]];
             }
         }

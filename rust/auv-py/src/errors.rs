@@ -1,14 +1,30 @@
 //! Errors of the engine as Python exceptions, all of them kinds of ValueError (or OSError for files).
 
 use auv_env::EnvError;
+use auv_planners::PlanError;
 use auv_world::WorldError;
 use pyo3::PyErr;
 use pyo3::create_exception;
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyValueError};
 
-create_exception!(auvgym, ScenarioError, PyValueError, "A scenario that is not allowed: names file, key, value and what was allowed.");
-create_exception!(auvgym, ActionError, PyValueError, "An action that is not allowed: names the entry, its value and what was allowed.");
-create_exception!(auvgym, PlanningError, PyValueError, "A planner, parameter or path that is not allowed: names it, its value and what was allowed.");
+create_exception!(
+    auvgym,
+    ScenarioError,
+    PyValueError,
+    "A scenario that is not allowed: names file, key, value and what was allowed."
+);
+create_exception!(
+    auvgym,
+    ActionError,
+    PyValueError,
+    "An action that is not allowed: names the entry, its value and what was allowed."
+);
+create_exception!(
+    auvgym,
+    PlanningError,
+    PyValueError,
+    "A planner, parameter or path that is not allowed: names it, its value and what was allowed."
+);
 
 pub fn world(error: WorldError) -> PyErr {
     match &error {
@@ -26,5 +42,12 @@ pub fn env(error: EnvError) -> PyErr {
         EnvError::World(error) => world(error),
         EnvError::Action { .. } => ActionError::new_err(error.to_string()),
         EnvError::Ended(_) | EnvError::Saved(_) => PyValueError::new_err(error.to_string()),
+    }
+}
+
+pub fn planning(error: PlanError) -> PyErr {
+    match error {
+        PlanError::World(error) => world(error),
+        error => PlanningError::new_err(error.to_string()),
     }
 }

@@ -4,6 +4,7 @@ mod episode;
 mod errors;
 mod field;
 mod interrupt;
+mod planning;
 mod points;
 mod scenario;
 mod world;
@@ -19,6 +20,8 @@ mod _core {
     use crate::errors::{ActionError, PlanningError, ScenarioError};
     #[pymodule_export]
     use crate::field::TimeField;
+    #[pymodule_export]
+    use crate::planning::{list_planners, path_cost, plan, replan, run_phases};
     #[pymodule_export]
     use crate::scenario::{Scenario, families};
     #[pymodule_export]

@@ -6,17 +6,13 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// (n, width) float64, C order, every entry finite.
-pub fn rows<'a, const WIDTH: usize>(
-    name: &str,
-    points: &'a PyReadonlyArray2<'_, f64>,
-) -> PyResult<&'a [[f64; WIDTH]]> {
+pub fn rows<'a, const WIDTH: usize>(name: &str, points: &'a PyReadonlyArray2<'_, f64>) -> PyResult<&'a [[f64; WIDTH]]> {
     if points.shape()[1] != WIDTH {
         let message = format!("{name} has shape {:?}: must be (n, {WIDTH})", points.shape());
         return Err(PyValueError::new_err(message));
     }
-    let values = points
-        .as_slice()
-        .map_err(|_| PyValueError::new_err(format!("{name} must be contiguous in C order")))?;
+    let values =
+        points.as_slice().map_err(|_| PyValueError::new_err(format!("{name} must be contiguous in C order")))?;
     if let Some(i) = values.iter().position(|value| !value.is_finite()) {
         let (row, column) = (i / WIDTH, i % WIDTH);
         return Err(PyValueError::new_err(format!("{name}[{row}, {column}] = {}: must be finite", values[i])));

@@ -47,7 +47,8 @@ impl World {
     ) -> PyResult<Self> {
         let mut events = Vec::with_capacity(changes.len());
         for (time_s, vehicle_m) in changes {
-            events.push(ChangeEvent { time_s: points::time(time_s)?, vehicle_m: points::finite("vehicle", vehicle_m)? });
+            events
+                .push(ChangeEvent { time_s: points::time(time_s)?, vehicle_m: points::finite("vehicle", vehicle_m)? });
         }
         let time_s = points::time(time_s)?;
         auv_world::World::restore(scenario.0.clone(), seed, mission, &events, time_s).map(Self).map_err(errors::world)
@@ -180,8 +181,7 @@ fn snapshot(world: &auv_world::World) -> serde_json::Result<Value> {
         let (position, base) = (world.obstacle_position(i), obstacle.position_m());
         if let Obstacle::Polygon(shape) = obstacle {
             let shift = [position[0] - base[0], position[1] - base[1]];
-            let moved: Vec<[f64; 2]> =
-                shape.vertices_m.iter().map(|v| [v[0] + shift[0], v[1] + shift[1]]).collect();
+            let moved: Vec<[f64; 2]> = shape.vertices_m.iter().map(|v| [v[0] + shift[0], v[1] + shift[1]]).collect();
             value["vertices_m"] = json!(moved);
         }
         value["position_m"] = json!(position);
@@ -202,7 +202,9 @@ fn snapshot(world: &auv_world::World) -> serde_json::Result<Value> {
         })
         .collect();
     let (peaks, floor_depth) = match &scenario.seabed {
-        Some(auv_world::scenario::Seabed::Peaks(peaks)) => (serde_json::to_value(&peaks.peaks)?, Some(peaks.floor_depth_m)),
+        Some(auv_world::scenario::Seabed::Peaks(peaks)) => {
+            (serde_json::to_value(&peaks.peaks)?, Some(peaks.floor_depth_m))
+        }
         Some(auv_world::scenario::Seabed::Flat(flat)) => (json!([]), Some(flat.depth_m)),
         None if scenario.dimensions == 3 => (json!([]), Some(scenario.domain.max_m[2])),
         _ => (json!([]), None),

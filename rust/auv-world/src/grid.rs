@@ -84,9 +84,8 @@ pub fn to_metres(
     let (columns, rows) = (Axis::new(longitude.to_vec()), Axis::new(latitude.to_vec()));
     let native = |axis: &Axis| (axis.values[axis.len() - 1] - axis.values[0]) / (axis.len() - 1) as f64;
     let degree = crate::projection::EARTH_RADIUS_M.to_radians();
-    let spacing = 0.5
-        * degree
-        * native(&rows).min(native(&columns) * libm::cos(projection.latitude_deg.to_radians()).max(0.01));
+    let spacing =
+        0.5 * degree * native(&rows).min(native(&columns) * libm::cos(projection.latitude_deg.to_radians()).max(0.01));
     let axis = |low: f64, high: f64| {
         let cells = ((high - low) / spacing).ceil().clamp(1.0, 4000.0);
         Axis::new((0..=cells as usize).map(|i| low + (high - low) * i as f64 / cells).collect())
@@ -119,8 +118,7 @@ pub fn to_metres(
 /// Linear interpolation in a cell; corners that are NaN are left out, all NaN gives NaN.
 #[inline]
 fn bilinear(corners: [f32; 4], across: f64, along: f64) -> f64 {
-    let weights =
-        [(1.0 - across) * (1.0 - along), across * (1.0 - along), (1.0 - across) * along, across * along];
+    let weights = [(1.0 - across) * (1.0 - along), across * (1.0 - along), (1.0 - across) * along, across * along];
     let (mut sum, mut weight) = (0.0, 0.0);
     for (corner, w) in corners.iter().zip(weights) {
         if !corner.is_nan() && w > 0.0 {

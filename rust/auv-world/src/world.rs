@@ -6,12 +6,14 @@
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use wide::f64x4;
 
 use crate::currents::{GriddedField, VortexField, jet_velocity};
 use crate::error::WorldError;
+use crate::lanes::LANES;
 use crate::math::{Vec2, Vec3, distance, norm};
 use crate::motion::{reflect, reflects};
-use crate::obstacles::{Discs, Solid, Spheres, polygon::Prism};
+use crate::obstacles::{Beams, Discs, Solid, Spheres, polygon::Prism};
 use crate::rng::{Purpose, Stream};
 use crate::scenario::{Change, Current, Hold, Jet, Mission, Obstacle, Redraw, Scenario, Seabed, VortexDraw};
 use crate::seabed::Floor;
@@ -105,6 +107,11 @@ impl World {
         }
         world.set_time(time_s);
         Ok(world)
+    }
+
+    /// A world of a scenario that is known to be allowed.
+    pub(crate) fn trusted(scenario: Scenario, seed: u64) -> Self {
+        Self { seed, ..Self::unchecked(scenario) }
     }
 
     /// A world at time 0 of a scenario whose numbers are known to be good.
@@ -376,24 +383,32 @@ impl World {
         self.spheres.near(origin, longest, &mut scratch.spheres);
         self.discs.near(origin, longest, &mut scratch.discs);
         self.fixed.floor.near(origin, longest, &mut scratch.floor);
+        for (directions, ranges) in directions.chunks(LANES).zip(ranges.chunks_mut(LANES)) {
+            let beams: Beams = std::array::from_fn(|axis| {
+                f64x4::new(std::array::from_fn(|lane| directions[lane.min(directions.len() - 1)][axis]))
+            });
+            let mut free = self.wall_range(origin, &beams, f64x4::splat(longest));
+            free = self.spheres.range(origin, &beams, free, &scratch.spheres);
+            free = self.discs.range(origin, &beams, free, &scratch.discs);
+            free = self.fixed.floor.range(origin, &beams, free, &scratch.floor);
+            for ((direction, range), free) in directions.iter().zip(ranges).zip(free.to_array()) {
+                *range = self.solids.iter().fold(free, |free, solid| solid.range(origin, *direction, free));
+            }
+        }
+    }
+
+    /// The lesser of `nearest` and how far beams run before they meet a wall of the box or the surface (m).
+    fn wall_range(&self, origin: Vec3, beams: &Beams, nearest: f64x4) -> f64x4 {
         let domain = &self.fixed.scenario.domain;
         let axes = if self.fixed.scenario.dimensions == 2 { 2 } else { 3 };
-        for (direction, range) in directions.iter().zip(ranges) {
-            let mut free = longest;
-            for axis in 0..axes {
-                let rate = direction[axis];
-                let gap = if rate > 0.0 { domain.max_m[axis] - origin[axis] } else { origin[axis] - domain.min_m[axis] };
-                if rate != 0.0 {
-                    free = free.min(gap.max(0.0) / rate.abs());
-                }
-            }
-            free = free.min(self.spheres.range(origin, *direction, &scratch.spheres));
-            free = free.min(self.discs.range(origin, *direction, &scratch.discs));
-            for solid in &self.solids {
-                free = solid.range(origin, *direction, free);
-            }
-            *range = self.fixed.floor.range(origin, *direction, free, &scratch.floor);
-        }
+        (0..axes).fold(nearest, |nearest, axis| {
+            let ahead = f64x4::splat((domain.max_m[axis] - origin[axis]).max(0.0));
+            let behind = f64x4::splat((origin[axis] - domain.min_m[axis]).max(0.0));
+            let rate = beams[axis];
+            let gap = rate.simd_gt(f64x4::ZERO).select(ahead, behind);
+            let still = rate.simd_eq(f64x4::ZERO);
+            still.select(nearest, nearest.fast_min(gap / still.select(f64x4::ONE, rate.abs())))
+        })
     }
 
     /// Whether another map change will change anything.

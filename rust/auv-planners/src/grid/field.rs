@@ -26,6 +26,21 @@ impl Default for Settings {
     }
 }
 
+impl Settings {
+    /// The spacing asked for, or `part` of the default for a world (m).
+    pub(super) fn spacing_or(&self, world: &World, part: f64) -> f64 {
+        if self.spacing_m > 0.0 {
+            return self.spacing_m;
+        }
+        let domain = &world.scenario().domain;
+        let longest = (0..3).map(|axis| domain.max_m[axis] - domain.min_m[axis]).fold(0.0, f64::max);
+        part * longest / if world.scenario().dimensions == 2 { 80.0 } else { 40.0 }
+    }
+}
+
+/// Slower over ground than this part of its speed through water, a vehicle is not getting anywhere.
+const STALLED: f64 = 0.02;
+
 /// Most nodes a grid may have.
 const MOST_NODES: f64 = 4e6;
 
@@ -93,17 +108,11 @@ fn steps(flat: bool) -> Vec<[i32; 3]> {
 impl TimeField {
     /// The field of a world as it is now, for its goal or another. `interrupted` is asked now and then;
     /// when it says yes, there is no field.
-    pub fn new(
-        world: &World,
-        goal: Vec3,
-        settings: Settings,
-        interrupted: &mut dyn FnMut() -> bool,
-    ) -> Option<Self> {
+    pub fn new(world: &World, goal: Vec3, settings: Settings, interrupted: &mut dyn FnMut() -> bool) -> Option<Self> {
         let domain = &world.scenario().domain;
         let flat = world.scenario().dimensions == 2;
         let size: Vec3 = std::array::from_fn(|axis| domain.max_m[axis] - domain.min_m[axis]);
-        let longest = size.iter().fold(0.0, |a: f64, b| a.max(*b));
-        let wanted = if settings.spacing_m > 0.0 { settings.spacing_m } else { longest / if flat { 80.0 } else { 40.0 } };
+        let wanted = settings.spacing_or(world, 1.0);
         // A finer grid than memory allows is made coarser.
         let nodes: f64 = size.iter().map(|edge| edge / wanted + 1.0).product();
         let wanted = if nodes > MOST_NODES { wanted * (nodes / MOST_NODES).sqrt() } else { wanted };
@@ -155,7 +164,8 @@ impl TimeField {
                 let span: Vec3 = std::array::from_fn(|axis| f64::from(step[axis]) * self.spacing[axis]);
                 let length = norm(span);
                 let row = self.counts[0] as i64;
-                let offset = i64::from(step[0]) + row * (i64::from(step[1]) + self.counts[1] as i64 * i64::from(step[2]));
+                let offset =
+                    i64::from(step[0]) + row * (i64::from(step[1]) + self.counts[1] as i64 * i64::from(step[2]));
                 (span.map(|component| component / length), length, offset)
             })
             .collect();
@@ -186,12 +196,8 @@ impl TimeField {
                 if done[behind] || clearance[behind] <= self.inflation {
                     continue;
                 }
-                let middle = [0, 1].map(|axis| 0.5 * (current[here][axis] + current[behind][axis]));
-                let over_ground = ground_speed(*direction, middle, self.speed);
-                if over_ground <= 0.01 * self.speed {
-                    continue;
-                }
-                let arrival = seconds + length / over_ground;
+                let pace = self.pace(*direction, current[behind], current[here]);
+                let arrival = seconds + length * pace;
                 if arrival < self.seconds[behind]
                     && self.free(world, self.place(behind), clearance[behind], self.place(here), clearance[here])
                 {
@@ -202,6 +208,18 @@ impl TimeField {
             }
         }
         true
+    }
+
+    /// Seconds per metre along an edge between two currents, by Simpson's rule over its ends and middle;
+    /// infinite where the current wins at any of them.
+    #[inline]
+    fn pace(&self, direction: Vec3, behind: Vec2, here: Vec2) -> f64 {
+        let middle = [0.5 * (behind[0] + here[0]), 0.5 * (behind[1] + here[1])];
+        let slowness = |current: Vec2| {
+            let over_ground = ground_speed(direction, current, self.speed);
+            if over_ground > STALLED * self.speed { 1.0 / over_ground } else { f64::INFINITY }
+        };
+        (slowness(behind) + 4.0 * slowness(middle) + slowness(here)) / 6.0
     }
 
     /// Puts the nodes from which the goal is reached directly on the heap.
@@ -265,7 +283,8 @@ impl TimeField {
         }
         let middle = add_scaled(a, 0.5, sub(b, a));
         let at_middle = world.clearance(middle);
-        self.clear_of(world, a, at_a, middle, at_middle, margin) && self.clear_of(world, middle, at_middle, b, at_b, margin)
+        self.clear_of(world, a, at_a, middle, at_middle, margin)
+            && self.clear_of(world, middle, at_middle, b, at_b, margin)
     }
 
     /// Where to steer from `position`: the node within `reach_m`, or the goal, that is reached freely and

@@ -17,7 +17,8 @@ pub struct GridPath {
     pub evaluations: u64,
 }
 
-/// Plans from `start` to `goal` through the world as it is now; `None` if interrupted.
+/// Plans from `start` to `goal` through the world as it is now, by default on a grid twice as fine as a
+/// field's; `None` if interrupted.
 pub fn plan(
     world: &World,
     start: Vec3,
@@ -25,6 +26,7 @@ pub fn plan(
     settings: Settings,
     interrupted: &mut dyn FnMut() -> bool,
 ) -> Option<GridPath> {
+    let settings = Settings { spacing_m: settings.spacing_or(world, 0.5), ..settings };
     let field = TimeField::new(world, goal, settings, interrupted)?;
     let evaluations = field.settled();
     let Some(mut node) = field.entry(world, start) else {
@@ -73,7 +75,12 @@ mod tests {
         let parameters = Parameters { obstacles: Some(0), ..Parameters::default() };
         let mut scenario = generate("lfhh-2d", 1, &parameters).unwrap();
         let vertices_m = vec![[-1e3, 15e3], [21e3, 15e3], [21e3, 16e3], [-1e3, 16e3]];
-        scenario.obstacles.push(Obstacle::Polygon(Polygon { vertices_m, top_m: -1.0, bottom_m: 1.0, velocity_mps: [0.0; 2] }));
+        scenario.obstacles.push(Obstacle::Polygon(Polygon {
+            vertices_m,
+            top_m: -1.0,
+            bottom_m: 1.0,
+            velocity_mps: [0.0; 2],
+        }));
         let world = World::new(scenario, 0, 0).unwrap();
         let mission = world.mission().clone();
         let path = plan(&world, mission.start_m, mission.goal_m, Settings::default(), &mut || false).unwrap();

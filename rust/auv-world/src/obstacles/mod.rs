@@ -7,7 +7,7 @@ pub mod polygon;
 mod round;
 mod superquadric;
 
-pub use round::{Discs, Spheres};
+pub use round::{Beams, Discs, Spheres};
 
 use crate::math::{Vec3, add_scaled};
 use crate::scenario::{Cylinder, Obstacle, Superquadric};
@@ -87,9 +87,7 @@ impl Obstacle {
         match self {
             Self::Sphere(shape) => shape.position_m,
             Self::Disc(shape) => [shape.position_m[0], shape.position_m[1], 0.0],
-            Self::Cylinder(shape) => {
-                [shape.position_m[0], shape.position_m[1], 0.5 * (shape.top_m + shape.bottom_m)]
-            }
+            Self::Cylinder(shape) => [shape.position_m[0], shape.position_m[1], 0.5 * (shape.top_m + shape.bottom_m)],
             Self::Superquadric(shape) => shape.position_m,
             Self::Polygon(shape) => {
                 let [x, y] = polygon::centre(&shape.vertices_m);

@@ -53,7 +53,8 @@ fn outline_distance(corners: &[Vec2], p: Vec2) -> f64 {
     for &to in corners {
         let edge = [to[0] - from[0], to[1] - from[1]];
         let offset = [p[0] - from[0], p[1] - from[1]];
-        let along = ((offset[0] * edge[0] + offset[1] * edge[1]) / (edge[0] * edge[0] + edge[1] * edge[1])).clamp(0.0, 1.0);
+        let along =
+            ((offset[0] * edge[0] + offset[1] * edge[1]) / (edge[0] * edge[0] + edge[1] * edge[1])).clamp(0.0, 1.0);
         let gap = [offset[0] - along * edge[0], offset[1] - along * edge[1]];
         nearest2 = nearest2.min(gap[0] * gap[0] + gap[1] * gap[1]);
         // Crossing rule: edges that a ray to +x crosses.

@@ -48,19 +48,24 @@ fn nearer(distance2: f64x4, radius: f64x4, nearest: f64) -> f64 {
     if distance2.simd_lt(reach * reach).any() { least(distance2.sqrt() - radius, nearest) } else { nearest }
 }
 
-/// How far a beam runs before it meets a ball of the given centre (relative to the origin) and radius;
-/// `square` is the squared length of the beam's direction in the space of the ball.
-#[inline]
-fn chord(centre_dot: f64, centre2: f64, radius: f64, square: f64) -> f64 {
-    let outside = centre2 - radius * radius;
+/// Four unit directions of sonar beams.
+pub type Beams = [f64x4; 3];
+
+/// The lesser of `nearest` and how far four beams run before they meet a ball: `along` is the centre's
+/// offset along each beam, `outside` its squared offset less the squared radius, `square` the squared
+/// length of the beams' directions in the space of the ball.
+#[inline(always)]
+fn chord(along: f64x4, outside: f64, square: f64x4, nearest: f64x4) -> f64x4 {
     if outside <= 0.0 {
-        return 0.0;
+        return f64x4::ZERO;
     }
-    let discriminant = centre_dot * centre_dot - square * outside;
-    if centre_dot <= 0.0 || discriminant < 0.0 {
-        return f64::INFINITY;
+    let discriminant = along * along - square * f64x4::splat(outside);
+    let meets = along.simd_gt(f64x4::ZERO) & discriminant.simd_ge(f64x4::ZERO);
+    if !meets.any() {
+        return nearest;
     }
-    (centre_dot - discriminant.sqrt()) / square
+    let range = (along - discriminant.fast_max(f64x4::ZERO).sqrt()) / square;
+    meets.select(range.fast_min(nearest), nearest)
 }
 
 impl Spheres {
@@ -146,17 +151,16 @@ impl Spheres {
         }
     }
 
-    /// How far a beam of unit `direction` runs before it meets one of `candidates` (m).
-    pub fn range(&self, origin: Vec3, direction: Vec3, candidates: &[u32]) -> f64 {
-        let mut nearest = f64::INFINITY;
-        for &i in candidates {
+    /// The lesser of `nearest` and how far beams run before they meet one of `candidates` (m).
+    #[inline]
+    pub fn range(&self, origin: Vec3, beams: &Beams, nearest: f64x4, candidates: &[u32]) -> f64x4 {
+        candidates.iter().fold(nearest, |nearest, &i| {
             let i = i as usize;
             let c = [self.x[i] - origin[0], self.y[i] - origin[1], self.z[i] - origin[2]];
-            let along = c[0] * direction[0] + c[1] * direction[1] + c[2] * direction[2];
-            let square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
-            nearest = nearest.min(chord(along, square, self.radius[i], 1.0));
-        }
-        nearest
+            let along = beams[0] * f64x4::splat(c[0]) + beams[1] * f64x4::splat(c[1]) + beams[2] * f64x4::splat(c[2]);
+            let outside = c[0] * c[0] + c[1] * c[1] + c[2] * c[2] - self.radius[i] * self.radius[i];
+            chord(along, outside, f64x4::ONE, nearest)
+        })
     }
 }
 
@@ -210,21 +214,17 @@ impl Discs {
         }
     }
 
-    /// How far a beam of unit `direction` runs before it meets one of `candidates` (m).
-    pub fn range(&self, origin: Vec3, direction: Vec3, candidates: &[u32]) -> f64 {
-        let square = direction[0] * direction[0] + direction[1] * direction[1];
-        if square < 1e-12 {
-            // Straight up or down: inside one or never.
-            return if self.clearance(origin) <= 0.0 { 0.0 } else { f64::INFINITY };
-        }
-        let mut nearest = f64::INFINITY;
-        for &i in candidates {
+    /// The lesser of `nearest` and how far beams run before they meet one of `candidates` (m). Beams
+    /// straight up or down meet only a disc that they start in.
+    #[inline]
+    pub fn range(&self, origin: Vec3, beams: &Beams, nearest: f64x4, candidates: &[u32]) -> f64x4 {
+        let square = (beams[0] * beams[0] + beams[1] * beams[1]).fast_max(f64x4::splat(1e-300));
+        candidates.iter().fold(nearest, |nearest, &i| {
             let i = i as usize;
             let c = [self.x[i] - origin[0], self.y[i] - origin[1]];
-            let along = c[0] * direction[0] + c[1] * direction[1];
-            nearest = nearest.min(chord(along, c[0] * c[0] + c[1] * c[1], self.radius[i], square));
-        }
-        nearest
+            let along = beams[0] * f64x4::splat(c[0]) + beams[1] * f64x4::splat(c[1]);
+            chord(along, c[0] * c[0] + c[1] * c[1] - self.radius[i] * self.radius[i], square, nearest)
+        })
     }
 }
 
@@ -252,17 +252,18 @@ mod tests {
             let length = crate::math::norm(d);
             prop_assume!(length > 0.1);
             let d = [d[0] / length, d[1] / length, d[2] / length];
-            for (clearance, range) in [
-                (spheres.clearance(p), spheres.range(p, d, &ALL)),
-                (discs.clearance(p), discs.range(p, d, &ALL)),
-            ] {
+            let beams = d.map(f64x4::splat);
+            let endless = f64x4::splat(f64::INFINITY);
+            let range = spheres.range(p, &beams, endless, &ALL).to_array()[0];
+            let flat = discs.range(p, &beams, endless, &ALL).to_array()[3];
+            for (clearance, range) in [(spheres.clearance(p), range), (discs.clearance(p), flat)] {
                 prop_assert!(range >= clearance.max(0.0) - 1e-6);
                 if clearance <= 0.0 { prop_assert_eq!(range, 0.0); }
             }
-            let range = spheres.range(p, d, &ALL);
             let mut near = Vec::new();
             spheres.near(p, 5000.0, &mut near);
-            prop_assert_eq!(range.min(5000.0), spheres.range(p, d, &near).min(5000.0));
+            let limit = f64x4::splat(5000.0);
+            prop_assert_eq!(range.min(5000.0), spheres.range(p, &beams, limit, &near).to_array()[1]);
             if range.is_finite() && range > 0.0 {
                 prop_assert!(spheres.clearance(add_scaled(p, range, d)).abs() < 1e-6);
             }

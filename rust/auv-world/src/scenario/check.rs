@@ -1,6 +1,6 @@
 //! What a scenario may say. Every refusal names the key, the value and what is allowed.
 
-use super::{Change, Current, GriddedCurrent, GriddedSeabed, Hold, Obstacle, SCHEMA, Scenario, SectionFrame, Seabed};
+use super::{Change, Current, GriddedCurrent, GriddedSeabed, Hold, Obstacle, SCHEMA, Scenario, Seabed, SectionFrame};
 use crate::error::WorldError;
 use crate::math::{Vec2, Vec3};
 use crate::obstacles::polygon;
@@ -138,8 +138,7 @@ impl Scenario {
     fn check_vehicle(&self) -> Checked {
         let (vehicle, limits, episode) = (&self.vehicle, &self.limits, &self.episode);
         positive("limits.goal_radius_m", limits.goal_radius_m)?;
-        for (key, value) in
-            [("limits.time_factor", limits.time_factor), ("limits.energy_factor", limits.energy_factor)]
+        for (key, value) in [("limits.time_factor", limits.time_factor), ("limits.energy_factor", limits.energy_factor)]
         {
             finite(key, value)?;
             if value < 1.0 {
@@ -221,7 +220,8 @@ impl Scenario {
     }
 
     fn check_gridded_seabed(&self, grid: &GriddedSeabed) -> Checked {
-        let (columns, rows) = self.check_axes("seabed", [&grid.x_m, &grid.y_m, &grid.longitude_deg, &grid.latitude_deg])?;
+        let (columns, rows) =
+            self.check_axes("seabed", [&grid.x_m, &grid.y_m, &grid.longitude_deg, &grid.latitude_deg])?;
         let depths = check_data("seabed.depth_m", &grid.depth_m, rows * columns)?;
         if depths.iter().any(|depth| !depth.is_finite()) {
             return Err(WorldError::key("seabed.depth_m", "NaN", "every depth must be a finite number"));
@@ -348,7 +348,8 @@ impl Scenario {
             }
             let length = crate::math::distance(mission.start_m, mission.goal_m);
             if length <= self.limits.goal_radius_m {
-                let rule = format!("must be farther from the start than the goal radius, {}", self.limits.goal_radius_m);
+                let rule =
+                    format!("must be farther from the start than the goal radius, {}", self.limits.goal_radius_m);
                 return Err(WorldError::key(format!("missions[{i}].goal_m"), format!("{length} m away"), rule));
             }
         }
@@ -411,8 +412,9 @@ fn check_obstacle(key: &str, obstacle: &Obstacle) -> Checked {
             }
             all_finite(&name("velocity_mps"), &shape.velocity_mps)?;
             between(key, shape.top_m, shape.bottom_m)?;
-            polygon::check_simple(&shape.vertices_m)
-                .map_err(|rule| WorldError::key(name("vertices_m"), format!("{} corners", shape.vertices_m.len()), rule))
+            polygon::check_simple(&shape.vertices_m).map_err(|rule| {
+                WorldError::key(name("vertices_m"), format!("{} corners", shape.vertices_m.len()), rule)
+            })
         }
     }
 }

@@ -33,10 +33,8 @@ impl Scenario {
     /// [`WorldError`] naming the key, its value and what was allowed.
     pub fn from_json(text: &str) -> Result<Self, WorldError> {
         let mut document = serde_json::Deserializer::from_str(text);
-        let scenario: Self = serde_path_to_error::deserialize(&mut document).map_err(|error| WorldError::Format {
-            file: None,
-            message: explain(error.path(), error.inner()),
-        })?;
+        let scenario: Self = serde_path_to_error::deserialize(&mut document)
+            .map_err(|error| WorldError::Format { file: None, message: explain(error.path(), error.inner()) })?;
         scenario.check()?;
         Ok(scenario)
     }

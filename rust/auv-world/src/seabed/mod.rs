@@ -6,7 +6,10 @@ mod peaks;
 pub use gridded::GridFloor;
 pub use peaks::PeakFloor;
 
+use wide::f64x4;
+
 use crate::math::Vec3;
+use crate::obstacles::Beams;
 
 /// The sea floor of a world.
 #[derive(Debug, Clone)]
@@ -51,26 +54,23 @@ impl Floor {
         }
     }
 
-    /// How far a beam of unit `direction` runs before it meets the floor (m), at most `longest`;
-    /// `candidates` as from [`Floor::near`].
-    pub fn range(&self, origin: Vec3, direction: Vec3, longest: f64, candidates: &[u32]) -> f64 {
+    /// The lesser of `nearest` and how far four beams run before they meet the floor (m); `candidates` as
+    /// from [`Floor::near`].
+    pub fn range(&self, origin: Vec3, beams: &Beams, nearest: f64x4, candidates: &[u32]) -> f64x4 {
         match self {
-            Self::None => longest,
-            Self::Flat(depth) => plane_range(depth - origin[2], direction[2]).min(longest),
-            Self::Peaks(peaks) => peaks.range(origin, direction, longest, candidates),
-            Self::Gridded(grid) => grid.range(origin, direction, longest),
+            Self::None => nearest,
+            Self::Flat(depth) => {
+                let dives = beams[2].simd_gt(f64x4::ZERO);
+                let plane = f64x4::splat((depth - origin[2]).max(0.0)) / dives.select(beams[2], f64x4::ONE);
+                dives.select(plane.fast_min(nearest), nearest)
+            }
+            Self::Peaks(peaks) => peaks.range(origin, beams, nearest, candidates),
+            Self::Gridded(grid) => {
+                let (directions, nearest) = (beams.map(f64x4::to_array), nearest.to_array());
+                f64x4::new(std::array::from_fn(|lane| {
+                    grid.range(origin, directions.map(|axis| axis[lane]), nearest[lane])
+                }))
+            }
         }
-    }
-}
-
-/// How far a beam runs before it meets a plane `gap` away, approached at `rate` per metre.
-#[inline]
-pub(crate) fn plane_range(gap: f64, rate: f64) -> f64 {
-    if gap <= 0.0 {
-        0.0
-    } else if rate > 0.0 {
-        gap / rate
-    } else {
-        f64::INFINITY
     }
 }

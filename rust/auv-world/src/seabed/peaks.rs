@@ -7,9 +7,9 @@
 
 use wide::f64x4;
 
-use super::plane_range;
 use crate::lanes::{Column, exp as exp4, least};
 use crate::math::{Vec3, add_scaled, exp};
+use crate::obstacles::Beams;
 use crate::scenario::{Peak, Peaks};
 
 /// At most exp(u^2 / 2), without an exponential: the start of its series, and 1 for u < 0.
@@ -117,31 +117,38 @@ impl PeakFloor {
         }
     }
 
-    /// How far a beam of unit `direction` runs before it meets the flat floor or one of the peaks
-    /// `candidates` (m), at most `longest`.
-    pub fn range(&self, origin: Vec3, direction: Vec3, longest: f64, candidates: &[u32]) -> f64 {
-        let above = self.floor_depth - origin[2];
-        let mut range = longest.min(plane_range(above, direction[2]));
-        let horizontal2 = direction[0] * direction[0] + direction[1] * direction[1];
+    /// The lesser of `nearest` and how far four beams run before they meet the flat floor or one of the
+    /// peaks `candidates` (m).
+    pub fn range(&self, origin: Vec3, beams: &Beams, nearest: f64x4, candidates: &[u32]) -> f64x4 {
+        let above = f64x4::splat(self.floor_depth - origin[2]);
+        let dives = beams[2].simd_gt(f64x4::ZERO);
+        let plane = above.fast_max(f64x4::ZERO) / dives.select(beams[2], f64x4::ONE);
+        let mut range = dives.select(plane.fast_min(nearest), nearest);
         for &i in candidates {
             let i = i as usize;
-            // u^2 along the beam is a parabola: q0 + 2 q1 t + q2 t^2.
+            // u^2 along a beam is a parabola, q0 + 2 q1 t + q2 t^2: where it is least the peak is highest.
             let (dx, dy) = (origin[0] - self.x[i], origin[1] - self.y[i]);
             let (ax, ay) = (self.along_x[i], self.along_y[i]);
-            let q0 = ax * dx * dx + ay * dy * dy;
-            let q1 = ax * dx * direction[0] + ay * dy * direction[1];
-            let q2 = ax * direction[0] * direction[0] + ay * direction[1] * direction[1];
-            let nearest = if horizontal2 > 1e-12 { (-q1 / q2).clamp(0.0, range) } else { 0.0 };
-            let least = (q0 + nearest * (2.0 * q1 + q2 * nearest)).max(0.0);
-            let lowest = above.min(above - range * direction[2]);
-            if lowest >= self.height[i] * exp(-0.5 * least) {
-                continue;
+            let q0 = f64x4::splat(ax * dx * dx + ay * dy * dy);
+            let q1 = beams[0] * f64x4::splat(ax * dx) + beams[1] * f64x4::splat(ay * dy);
+            let q2 = beams[0] * beams[0] * f64x4::splat(ax) + beams[1] * beams[1] * f64x4::splat(ay);
+            let closest = (-q1 / q2.fast_max(f64x4::splat(1e-30))).fast_max(f64x4::ZERO).fast_min(range);
+            let least = (q0 + closest * (q1 + q1 + q2 * closest)).fast_max(f64x4::ZERO);
+            let lowest = above.fast_min(above - range * beams[2]);
+            let rises = (f64x4::splat(self.height[i]) * exp4(f64x4::splat(-0.5) * least)).simd_gt(lowest);
+            let mut left = rises.to_bitmask();
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let direction = beams.map(|axis| axis.to_array()[lane]);
+                let mut ranges = range.to_array();
+                ranges[lane] = crate::obstacles::march(origin, direction, ranges[lane], |point| {
+                    let u = self.u2(i, point[0], point[1]).sqrt();
+                    let [height, steepness, u] = [self.height[i], self.steepness[i], u].map(f64x4::splat);
+                    distance_bound(height, steepness, u, self.floor_depth - point[2], f64::INFINITY).to_array()[0]
+                });
+                range = f64x4::new(ranges);
             }
-            range = crate::obstacles::march(origin, direction, range, |point| {
-                let u = self.u2(i, point[0], point[1]).sqrt();
-                let [height, steepness, u] = [self.height[i], self.steepness[i], u].map(f64x4::splat);
-                distance_bound(height, steepness, u, self.floor_depth - point[2], f64::INFINITY).to_array()[0]
-            });
         }
         range
     }
@@ -217,8 +224,10 @@ mod tests {
             let direction = [d[0] / length, d[1] / length, d[2] / length];
             let mut near = Vec::new();
             floor.near(origin, 5000.0, &mut near);
-            let range = floor.range(origin, direction, 5000.0, &near);
-            prop_assert_eq!(range, floor.range(origin, direction, 5000.0, &[0, 1, 2]));
+            let (beams, longest) = (direction.map(f64x4::splat), f64x4::splat(5000.0));
+            let ranges = floor.range(origin, &beams, longest, &near);
+            prop_assert_eq!(ranges.to_array(), floor.range(origin, &beams, longest, &[0, 1, 2]).to_array());
+            let range = ranges.to_array()[0];
             for i in 0..50 {
                 prop_assert!(floor.gap_along(origin, direction, range * f64::from(i) / 50.0) > -1e-6);
             }

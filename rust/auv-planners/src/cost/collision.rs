@@ -1,0 +1,257 @@
+//! Which segments of a path collide (LFHH eq. 9), in several readings.
+
+use auv_world::World;
+use auv_world::math::{Vec2, Vec3};
+
+use super::options::{Collision, CostOptions};
+use super::track::Track;
+use crate::sections::{CellMap, Frame};
+
+/// Points of a segment that are looked up in the cell map, at 1/8, 2/8, ... 8/8 of its way.
+const SAMPLES: usize = 8;
+/// A walk along a segment takes no shorter steps than this part of its length.
+const SHORTEST_STEP: f64 = 1e-3;
+/// Start and goal need only this part of the clearance that they have.
+const OWN_CLEARANCE: f64 = 0.9;
+
+/// A collision test, prepared for a world as it is now.
+#[derive(Debug, Clone)]
+pub enum Test {
+    /// Exact distance from segments to discs, 2-D.
+    Discs(Strips),
+    /// A walk along the segments by the world's clearance.
+    Walk {
+        /// The world.
+        world: Box<World>,
+        /// Clearance to keep (m).
+        margin: f64,
+    },
+    /// Points looked up in the cell map.
+    Cells {
+        /// Where the sections lie.
+        frame: Frame,
+        /// Which cells are blocked.
+        map: CellMap,
+        /// Only the end point of each segment.
+        ends_only: bool,
+        /// Each waypoint in sections and cells: a structure of arrays.
+        places: [Vec<f64>; 3],
+    },
+}
+
+impl Test {
+    /// Prepares the test that the options ask for.
+    pub fn new(world: &World, options: &CostOptions) -> Self {
+        let collision = options.collision_in(world.scenario());
+        if collision != Collision::Segment {
+            let frame = Frame::new(world);
+            let map = CellMap::new(world, &frame);
+            return Self::Cells {
+                frame,
+                map,
+                ends_only: collision == Collision::Waypoints,
+                places: Default::default(),
+            };
+        }
+        let flat = world.scenario().dimensions == 2 && !world.has_other_solids() && world.spheres().is_empty();
+        if flat && matches!(world.floor(), auv_world::seabed::Floor::None) {
+            return Self::Discs(Strips::new(world, options.margin_m));
+        }
+        Self::Walk { world: Box::new(world.clone()), margin: options.margin_m }
+    }
+
+    /// The cell map, if this test has one.
+    pub fn cells(&self) -> Option<(&Frame, &CellMap)> {
+        match self {
+            Self::Cells { frame, map, .. } => Some((frame, map)),
+            _ => None,
+        }
+    }
+
+    /// Number of segments that collide.
+    #[inline]
+    pub fn blocked(&mut self, track: &Track) -> usize {
+        match self {
+            Self::Discs(strips) => strips.blocked(track),
+            Self::Walk { world, margin } => {
+                let ends = ends(track).map(|point| OWN_CLEARANCE * world.clearance(point));
+                let blocked = |i: &usize| {
+                    let shortest = SHORTEST_STEP * track.length[*i];
+                    let required = required(*margin + 0.5 * shortest, ends, *i, track.segments());
+                    walk(world, track, *i, required, shortest)
+                };
+                (0..track.segments()).filter(blocked).count()
+            }
+            Self::Cells { frame, map, ends_only, places } => {
+                locate(track, frame, map, places);
+                let blocked = |i: &usize| {
+                    if *ends_only { end_blocked(map, places, *i) } else { samples_blocked(map, places, *i) }
+                };
+                (0..track.segments()).filter(blocked).count()
+            }
+        }
+    }
+}
+
+fn ends(track: &Track) -> [Vec3; 2] {
+    [track.point(0), track.point(track.segments())]
+}
+
+/// The clearance that segment `i` must keep: what is wanted, but at the ends of the path no more than
+/// they can have; a vehicle that already is too near may leave.
+#[inline]
+fn required(wanted: f64, ends: [f64; 2], i: usize, segments: usize) -> f64 {
+    let at_start = if i == 0 { wanted.min(ends[0]) } else { wanted };
+    if i + 1 == segments { at_start.min(ends[1]) } else { at_start }
+}
+
+/// Whether segment `i` comes nearer to a solid than `required`, walking by clearances.
+fn walk(world: &World, track: &Track, i: usize, required: f64, shortest: f64) -> bool {
+    let length = track.length[i];
+    let from = track.point(i);
+    let step = [track.dx[i], track.dy[i], track.dz[i]];
+    let mut walked = 0.0;
+    loop {
+        let part = if walked < length { walked / length } else { 1.0 };
+        let free = world.clearance(std::array::from_fn(|axis| from[axis] + part * step[axis])) - required;
+        if free <= 0.0 {
+            return true;
+        }
+        if walked >= length {
+            return false;
+        }
+        walked = (walked + free.max(shortest)).min(length);
+    }
+}
+
+/// Writes every waypoint in sections and cells.
+#[inline]
+fn locate(track: &Track, frame: &Frame, map: &CellMap, places: &mut [Vec<f64>; 3]) {
+    let n = track.points();
+    let [sections, across, down] = places;
+    for list in [&mut *sections, &mut *across, &mut *down] {
+        list.resize(n, 0.0);
+    }
+    let points = track.x[..n].iter().zip(&track.y[..n]).zip(&track.z[..n]);
+    let places = sections.iter_mut().zip(across).zip(down);
+    for (((x, y), z), ((section, across), down)) in points.zip(places) {
+        *section = frame.section(*x, *y);
+        [*across, *down] = map.scale(frame.lateral(*x, *y), *z);
+    }
+}
+
+#[inline]
+fn end_blocked(map: &CellMap, [section, across, down]: &[Vec<f64>; 3], i: usize) -> bool {
+    map.is_blocked_at(section[i + 1], across[i + 1], down[i + 1])
+}
+
+#[inline]
+fn samples_blocked(map: &CellMap, [section, across, down]: &[Vec<f64>; 3], i: usize) -> bool {
+    // From one section to the next all samples lie in one rectangle of cells: is it free altogether?
+    let (low, high) = (section[i].min(section[i + 1]), section[i].max(section[i + 1]));
+    let (from, to) = ([across[i], down[i]], [across[i + 1], down[i + 1]]);
+    if let Some(pair) = map.pair(low, high)
+        && map.is_free_pair(pair, from, to)
+    {
+        return false;
+    }
+    let step = [section[i + 1] - section[i], to[0] - from[0], to[1] - from[1]];
+    (1..=SAMPLES).any(|k| {
+        let part = k as f64 / SAMPLES as f64;
+        map.is_blocked_at(section[i] + part * step[0], from[0] + part * step[1], from[1] + part * step[2])
+    })
+}
+
+/// Discs, listed for each strip between two sections that they reach into.
+#[derive(Debug, Clone)]
+pub struct Strips {
+    frame: Frame,
+    margin: f64,
+    discs: Vec<Disc>,
+    first: Vec<u32>,
+    section: Vec<f64>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Disc {
+    centre: Vec2,
+    radius: f64,
+}
+
+/// Strips overlap by this much on both sides, in sections, so that rounding loses no disc.
+const OVERLAP: f64 = 1e-6;
+
+impl Strips {
+    fn new(world: &World, margin: f64) -> Self {
+        let frame = Frame::new(world);
+        let strips = frame.count() - 1;
+        let all = (0..world.discs().len()).map(|i| world.discs().get(i));
+        let all: Vec<Disc> = all.map(|(centre, radius)| Disc { centre, radius }).collect();
+        let (mut discs, mut first) = (Vec::new(), vec![0]);
+        for strip in 0..strips {
+            discs.extend(all.iter().filter(|disc| {
+                let section = frame.section(disc.centre[0], disc.centre[1]);
+                let reach = (disc.radius + margin) / frame.spacing_m() + 2.0 * OVERLAP;
+                (strip_of(section - reach, strips)..=strip_of(section + reach, strips)).contains(&strip)
+            }));
+            first.push(discs.len() as u32);
+        }
+        Self { frame, margin, discs, first, section: Vec::new() }
+    }
+
+    fn strips(&self) -> usize {
+        self.first.len() - 1
+    }
+
+    fn clearance(&self, point: Vec3) -> f64 {
+        let distance = |disc: &Disc| {
+            let (dx, dy) = (point[0] - disc.centre[0], point[1] - disc.centre[1]);
+            (dx * dx + dy * dy).sqrt() - disc.radius
+        };
+        self.discs.iter().map(distance).fold(f64::INFINITY, f64::min)
+    }
+
+    #[inline]
+    fn blocked(&mut self, track: &Track) -> usize {
+        let n = track.points();
+        self.section.resize(n, 0.0);
+        for (section, (x, y)) in self.section.iter_mut().zip(track.x.iter().zip(&track.y)) {
+            *section = self.frame.section(*x, *y);
+        }
+        let segments = track.segments();
+        let ends = if self.margin > 0.0 {
+            ends(track).map(|point| OWN_CLEARANCE * self.clearance(point))
+        } else {
+            [f64::INFINITY; 2]
+        };
+        let strips = self.strips();
+        let blocked = |i: &usize| {
+            let i = *i;
+            let (low, high) = (
+                self.section[i].min(self.section[i + 1]) + OVERLAP,
+                self.section[i].max(self.section[i + 1]) - OVERLAP,
+            );
+            let first = strip_of(low, strips);
+            let last = strip_of(high, strips).max(first);
+            let required = required(self.margin, ends, i, segments);
+            let discs = &self.discs[self.first[first] as usize..self.first[last + 1] as usize];
+            let (x, y, dx, dy) = (track.x[i], track.y[i], track.dx[i], track.dy[i]);
+            let square = dx * dx + dy * dy;
+            let inverse = if square > 0.0 { 1.0 / square } else { 0.0 };
+            discs.iter().any(|disc| {
+                let (cx, cy) = (disc.centre[0] - x, disc.centre[1] - y);
+                let part = ((cx * dx + cy * dy) * inverse).clamp(0.0, 1.0);
+                let (ex, ey) = (cx - part * dx, cy - part * dy);
+                let reach = (disc.radius + required).max(0.0);
+                ex * ex + ey * ey < reach * reach
+            })
+        };
+        (0..segments).filter(blocked).count()
+    }
+}
+
+/// The strip that holds a place, the nearest one if it lies outside.
+#[inline(always)]
+fn strip_of(section: f64, strips: usize) -> usize {
+    (section.floor() as i32).clamp(0, strips as i32 - 1) as usize
+}

@@ -1,0 +1,130 @@
+//! Evaluates paths one after the other, without allocating: what planners do hundreds of thousands of
+//! times, and `path_cost` once.
+
+use auv_world::World;
+use auv_world::math::Vec3;
+use auv_world::scenario::Vehicle;
+
+use super::collision::Test;
+use super::current::Flow;
+use super::options::{AlphaRange, Angle, Cost, CostOptions};
+use super::track::Track;
+use super::{CostTerms, PENALTY};
+use crate::error::PlanError;
+use crate::sections::{CellMap, Frame};
+
+/// A cost, prepared for a world as it is now.
+#[derive(Debug, Clone)]
+pub struct Evaluator {
+    cost: Cost,
+    flow: Flow,
+    test: Test,
+    vehicle: Vehicle,
+    /// A change of direction is too sharp if its cosine is less.
+    turn_limit: f64,
+    alpha: AlphaRange,
+    track: Track,
+}
+
+impl Evaluator {
+    /// Prepares a cost.
+    ///
+    /// # Errors
+    /// [`PlanError`] if an option is not allowed.
+    pub fn new(world: &World, cost: Cost, options: &CostOptions) -> Result<Self, PlanError> {
+        options.check()?;
+        let limit = match options.angle {
+            Angle::Turning => options.turn_limit_rad,
+            Angle::Interior => std::f64::consts::PI - options.turn_limit_rad,
+        };
+        Ok(Self {
+            cost,
+            flow: Flow::new(world),
+            test: Test::new(world, options),
+            vehicle: world.scenario().vehicle.clone(),
+            turn_limit: libm::cos(limit),
+            alpha: options.alpha,
+            track: Track::default(),
+        })
+    }
+
+    /// The cell map of the sections, if collisions are tested on it.
+    pub fn cells(&self) -> Option<(&Frame, &CellMap)> {
+        self.test.cells()
+    }
+
+    /// The path to be evaluated next: first make room, then set every waypoint.
+    pub fn track(&mut self) -> &mut Track {
+        &mut self.track
+    }
+
+    /// The cost of the path in the track.
+    #[inline]
+    pub fn terms(&mut self) -> CostTerms {
+        let track = &mut self.track;
+        track.measure();
+        let segments = track.segments() as f64;
+        let penalty = |offending: usize| if offending > 0 { offending as f64 / segments + PENALTY } else { 0.0 };
+        let (direct, path_length_m) = (track.direct_length(), track.path_length());
+        let length = if path_length_m > 0.0 { 1.0 - direct / path_length_m } else { 0.0 };
+        let curvature = penalty(track.sharp_turns(self.turn_limit));
+        let block = penalty(self.test.blocked(track));
+        let mut terms = CostTerms {
+            total: 0.0,
+            feasible: curvature + block == 0.0,
+            length,
+            curvature,
+            block,
+            current: 0.0,
+            path_length_m,
+            excess: None,
+            time_s: None,
+            energy_j: None,
+        };
+        let first = match self.cost {
+            Cost::Lfhh => {
+                self.flow.angles(track);
+                terms.current = mean_angle(track, self.alpha);
+                length
+            }
+            Cost::Time | Cost::Energy => {
+                let speed = self.vehicle.speed_mps;
+                terms.current = penalty(self.flow.times(track, speed));
+                terms.feasible &= terms.current == 0.0;
+                let time_s = track.sum_results();
+                // Power is constant, so energy ranks paths as time does; only the unit differs.
+                let excess = if time_s > 0.0 { 1.0 - direct / speed / time_s } else { 0.0 };
+                terms.excess = Some(excess);
+                terms.time_s = Some(time_s);
+                terms.energy_j = Some(time_s * self.vehicle.power_w(speed));
+                excess
+            }
+        };
+        terms.total = first + curvature + block + terms.current;
+        terms
+    }
+
+    /// The cost of any polyline of at least two points.
+    pub fn terms_of(&mut self, waypoints: &[Vec3]) -> CostTerms {
+        self.track.resize(waypoints.len());
+        for (i, point) in waypoints.iter().enumerate() {
+            self.track.set(i, *point);
+        }
+        self.terms()
+    }
+}
+
+/// LFHH eq. 10 from the angles in the track's results.
+#[inline]
+fn mean_angle(track: &mut Track, range: AlphaRange) -> f64 {
+    let n = track.segments();
+    if range == AlphaRange::PerPath {
+        let angles = &mut track.result[..n];
+        let (low, high) = angles.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), a| (low.min(*a), high.max(*a)));
+        let width = high - low;
+        for angle in angles {
+            *angle = if width > 0.0 { (*angle - low) / width } else { 0.0 };
+        }
+    }
+    track.sum_results() / n as f64
+}

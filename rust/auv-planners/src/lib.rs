@@ -1,0 +1,25 @@
+//! Path planners for dynamic oceans: a problem in, a plan and its counted budget out.
+//!
+//! [`registry::plan`] runs any planner by name, [`path_cost`] judges any path, [`replanning::replan`]
+//! plans anew within a window, and [`protocol::run`] repeats the LFHH paper's experiment.
+
+pub mod control;
+pub mod cost;
+pub mod error;
+pub mod grid;
+pub mod histogram;
+pub mod parameters;
+pub mod plan;
+pub mod protocol;
+pub mod registry;
+pub mod replanning;
+pub mod search;
+pub mod sections;
+#[cfg(test)]
+mod testing;
+
+pub use control::Control;
+pub use cost::{Cost, CostOptions, CostTerms, path_cost};
+pub use error::PlanError;
+pub use plan::Plan;
+pub use registry::{plan, planner_names};

@@ -1,0 +1,24 @@
+//! What a planner gives back.
+
+use auv_world::math::Vec3;
+
+use crate::cost::CostTerms;
+
+/// A planner's answer. If it found no feasible path it says so and gives the best of the others.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// The planner's name.
+    pub planner: String,
+    /// The path, from start to goal (m).
+    pub waypoints: Vec<Vec3>,
+    /// Whether the path breaks no constraint of its cost.
+    pub feasible: bool,
+    /// The cost of `waypoints`, to the last bit what [`crate::path_cost`] says of them.
+    pub cost: CostTerms,
+    /// Paths evaluated (nodes settled, for planners on graphs).
+    pub evaluations: u64,
+    /// Best total cost after so many evaluations, once for each generation.
+    pub history: Vec<(u64, f64)>,
+    /// Whether the caller interrupted it.
+    pub interrupted: bool,
+}

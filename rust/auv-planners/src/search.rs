@@ -1,0 +1,100 @@
+//! What every population planner needs around it: it counts evaluations, keeps to the budget, remembers
+//! the best candidate, and listens for interruption.
+
+use crate::control::Control;
+use crate::parameters::Common;
+use crate::plan::Plan;
+use crate::sections::SectionProblem;
+
+/// The control is asked once in this many evaluations: at most a few milliseconds even where an
+/// evaluation walks by clearances.
+const ASK_EVERY: u64 = 32;
+/// History is kept for this many generations without growing its memory.
+const USUAL_GENERATIONS: u64 = 1024;
+
+/// A search for the best candidate of a section problem.
+pub struct Search<'a> {
+    problem: &'a mut SectionProblem,
+    control: Control<'a>,
+    limit: u64,
+    evaluations: u64,
+    best: Vec<f64>,
+    best_total: f64,
+    feasible: bool,
+    interrupted: bool,
+    history: Vec<(u64, f64)>,
+}
+
+impl<'a> Search<'a> {
+    /// Starts a search with nothing evaluated.
+    pub fn new(problem: &'a mut SectionProblem, common: &Common, control: Control<'a>) -> Self {
+        let limit = common.max_evaluations.unwrap_or(u64::MAX);
+        let best = vec![0.0; problem.genes()];
+        let history = Vec::with_capacity(common.generations_or(USUAL_GENERATIONS).min(USUAL_GENERATIONS) as usize + 1);
+        Self {
+            problem,
+            control,
+            limit,
+            evaluations: 0,
+            best,
+            best_total: f64::INFINITY,
+            feasible: false,
+            interrupted: false,
+            history,
+        }
+    }
+
+    /// The problem.
+    pub fn problem(&self) -> &SectionProblem {
+        self.problem
+    }
+
+    /// The total cost of a candidate, or `None` if the budget is spent or the caller interrupted: then
+    /// stop. The first candidate is always evaluated.
+    #[inline]
+    pub fn evaluate(&mut self, genes: &[f64]) -> Option<f64> {
+        if self.evaluations >= self.limit {
+            return None;
+        }
+        if self.evaluations > 0 && self.evaluations.is_multiple_of(ASK_EVERY) && self.control.interrupted() {
+            self.interrupted = true;
+            return None;
+        }
+        let terms = self.problem.evaluate(genes);
+        self.evaluations += 1;
+        if terms.total < self.best_total || self.evaluations == 1 {
+            self.best.copy_from_slice(genes);
+            self.best_total = terms.total;
+            self.feasible = terms.feasible;
+        }
+        Some(terms.total)
+    }
+
+    /// Whether the best candidate so far is feasible.
+    pub fn is_feasible(&self) -> bool {
+        self.feasible
+    }
+
+    /// Notes the best total at the end of a generation.
+    pub fn end_generation(&mut self) {
+        self.history.push((self.evaluations, self.best_total));
+    }
+
+    /// The best candidate as a plan.
+    pub fn finish(mut self, planner: &str) -> Plan {
+        // A generation that the budget cut short has its line, too.
+        if self.history.last().is_none_or(|last| last.0 < self.evaluations) {
+            self.end_generation();
+        }
+        let cost = self.problem.evaluate(&self.best);
+        Plan {
+            planner: planner.to_owned(),
+            waypoints: self.problem.path(&self.best),
+            feasible: cost.feasible,
+            cost,
+            evaluations: self.evaluations,
+            history: self.history,
+            interrupted: self.interrupted,
+        }
+    }
+}

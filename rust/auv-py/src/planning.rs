@@ -1,0 +1,129 @@
+//! Planning: `plan`, `replan`, `path_cost`, `run_phases`.
+
+use std::cell::RefCell;
+
+use auv_planners::{Control, Cost, CostOptions, CostTerms, PlanError, protocol, registry, replanning};
+use auv_world::math::Vec3;
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::errors;
+use crate::interrupt::Signals;
+use crate::points;
+use crate::world::World;
+
+/// (planner, waypoints, feasible, cost, evaluations, history, window).
+type FoundPlan<'py> =
+    (String, Bound<'py, PyArray2<f64>>, bool, Bound<'py, PyDict>, u64, Bound<'py, PyArray2<f64>>, Option<usize>);
+
+/// Runs planning without the GIL; Ctrl-C stops it within a fraction of a second.
+fn run<T: Send>(py: Python<'_>, work: impl FnOnce(&Control<'_>) -> Result<T, PlanError> + Send) -> PyResult<T> {
+    let (result, signals) = py.detach(|| {
+        let signals = RefCell::new(Signals::new());
+        let ask = || signals.borrow_mut().stop();
+        let result = work(&Control::ask(&ask));
+        (result, signals.into_inner())
+    });
+    signals.finish()?;
+    result.map_err(errors::planning)
+}
+
+fn terms<'py>(py: Python<'py>, cost: &CostTerms) -> PyResult<Bound<'py, PyDict>> {
+    let terms = PyDict::new(py);
+    for (name, value) in cost.named() {
+        terms.set_item(name, value)?;
+    }
+    terms.set_item("feasible", f64::from(u8::from(cost.feasible)))?;
+    Ok(terms)
+}
+
+fn found(py: Python<'_>, plan: auv_planners::Plan, window: Option<usize>) -> PyResult<FoundPlan<'_>> {
+    let history: Vec<[f64; 2]> = plan.history.iter().map(|&(spent, best)| [spent as f64, best]).collect();
+    let rows = history.len();
+    let history = PyArray1::from_slice(py, history.as_flattened()).reshape([rows, 2])?;
+    let waypoints = points::table(py, &plan.waypoints)?;
+    Ok((plan.planner, waypoints, plan.feasible, terms(py, &plan.cost)?, plan.evaluations, history, window))
+}
+
+/// Names of the planners.
+#[pyfunction]
+pub fn list_planners() -> Vec<&'static str> {
+    registry::planner_names()
+}
+
+/// Plans through the world as it is now.
+#[pyfunction]
+pub fn plan<'py>(
+    py: Python<'py>,
+    world: &World,
+    planner: &str,
+    start: Option<Vec3>,
+    goal: Option<Vec3>,
+    seed: u64,
+    parameters_json: &str,
+) -> PyResult<FoundPlan<'py>> {
+    let world = world.0.clone();
+    let start = points::finite("start", start.unwrap_or(world.mission().start_m))?;
+    let goal = points::finite("goal", goal.unwrap_or(world.mission().goal_m))?;
+    let plan = run(py, |control| registry::plan(planner, &world, start, goal, seed, parameters_json, control))?;
+    found(py, plan, None)
+}
+
+/// Re-plans within a window of a global path.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "a call from Python")]
+pub fn replan<'py>(
+    py: Python<'py>,
+    world: &World,
+    path: PyReadonlyArray2<'py, f64>,
+    position: Vec3,
+    planner: &str,
+    seed: u64,
+    window: usize,
+    parameters_json: &str,
+) -> PyResult<FoundPlan<'py>> {
+    let path = points::rows::<3>("path", &path)?.to_vec();
+    let position = points::finite("position", position)?;
+    let world = world.0.clone();
+    let window = replanning::Window { sections: window, ..replanning::Window::default() };
+    let replan = run(py, |control| {
+        replanning::replan(&world, &path, position, planner, seed, parameters_json, window, control)
+    })?;
+    found(py, replan.plan, Some(replan.sections))
+}
+
+/// The terms of a cost for any path.
+#[pyfunction]
+pub fn path_cost<'py>(
+    py: Python<'py>,
+    world: &World,
+    waypoints: PyReadonlyArray2<'py, f64>,
+    cost: &str,
+    options_json: &str,
+) -> PyResult<Bound<'py, PyDict>> {
+    let rows = points::rows::<3>("waypoints", &waypoints)?;
+    let cost = Cost::from_name(cost).map_err(errors::planning)?;
+    let options: CostOptions = serde_json::from_str(options_json)
+        .map_err(|error| errors::PlanningError::new_err(format!("options of the cost: {error}")))?;
+    let cost = auv_planners::path_cost(&world.0, rows, cost, &options).map_err(errors::planning)?;
+    terms(py, &cost)
+}
+
+/// The papers' protocol: (cost, feasible, evaluations, window, position) of each phase.
+#[pyfunction]
+pub fn run_phases(
+    py: Python<'_>,
+    world: &World,
+    planner: &str,
+    seed: u64,
+    parameters_json: &str,
+) -> PyResult<Vec<(f64, bool, u64, usize, Vec3)>> {
+    let (scenario, mission) = (world.0.scenario().clone(), world.0.mission_index());
+    let settings = protocol::Settings::default();
+    let run = run(py, |control| protocol::run(&scenario, mission, planner, seed, parameters_json, settings, control))?;
+    let phases = run.phases.into_iter();
+    Ok(phases
+        .map(|phase| (phase.cost.total, phase.feasible, phase.evaluations, phase.window_sections, phase.vehicle_m))
+        .collect())
+}
