@@ -56,8 +56,8 @@ class AUVDynamic2DEnv(AUVEnv):
 
     ## Reward
     For each step ``(d_before - d_after) / d0 - 0.75 dt / time_limit``, plus 1 on arrival and -1 on
-    any other end. An episode that arrives sums to more than 1, one that fails to less than 0,
-    whatever the world: the reward orders policies as the leaderboard does.
+    any other end. An episode that arrives sums to at least 1.25 - 300 m / d0, one that fails to less
+    than 0, whatever the world: the reward orders policies as the leaderboard does.
 
     ## Starting state
     x uniform in 3 .. 17 km on the near side (y = 0), goal likewise at y = 39 km; the vehicle heads

@@ -12,9 +12,10 @@ import numpy.typing as npt
 from gymnasium.error import ResetNeeded
 
 from auvgym import _core
+from auvgym._arrays import numbers
 from auvgym._core import ActionError
 from auvgym._names import unknown
-from auvgym.scenario import Scenario, parameters_json, resolve_scenario
+from auvgym.scenario import Scenario, check_seed, parameters_json, resolve_scenario
 from auvgym.world import World
 
 if TYPE_CHECKING:
@@ -60,7 +61,9 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
         **unknown_settings: Any,
     ) -> None:
         if unknown_settings:
-            known = [name for name in inspect.signature(AUVEnv).parameters if name != "unknown_settings"]
+            known = [
+                name for name in inspect.signature(AUVEnv).parameters if name != "unknown_settings"
+            ]
             raise TypeError(unknown("setting", next(iter(unknown_settings)), known))
         if action_mode != "waypoint":
             raise ValueError(f"action_mode = {action_mode!r}: must be 'waypoint'")
@@ -91,8 +94,12 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
         self.plan: Array | None = None
 
         blocks = _core.observation_layout(self.dimensions)
-        low = np.concatenate([np.full(count, least, np.float32) for _, _, count, least, _, _ in blocks])
-        high = np.concatenate([np.full(count, most, np.float32) for _, _, count, _, most, _ in blocks])
+        low = np.concatenate(
+            [np.full(count, least, np.float32) for _, _, count, least, _, _ in blocks]
+        )
+        high = np.concatenate(
+            [np.full(count, most, np.float32) for _, _, count, _, most, _ in blocks]
+        )
         self.observation_space = gymnasium.spaces.Box(low, high, dtype=np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (self.dimensions,), np.float32)
         #: Name of a block of the observation -> where it is.
@@ -103,7 +110,16 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
         self.sonar_directions: Array = _core.sonar_directions(self.dimensions)
 
     def _make_source(self) -> _core.Source:
+        if (
+            isinstance(self._mission, bool)
+            or not isinstance(self._mission, int)
+            or self._mission < 0
+        ):
+            raise ValueError(f"mission = {self._mission!r}: must be an integer, 0 or more")
         if self._scenario is None:
+            if self._mission != 0:
+                message = f"mission = {self._mission}: needs a scenario, a drawn world has only one"
+                raise ValueError(message)
             return _core.Source.family(self.family, parameters_json(self._parameters))
         given = [name for name, value in self._parameters.items() if value is not None]
         if given:
@@ -115,8 +131,6 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
                 f"this environment needs {self.dimensions}"
             )
             raise ValueError(message)
-        if isinstance(self._mission, bool) or not isinstance(self._mission, int) or self._mission < 0:
-            raise ValueError(f"mission = {self._mission!r}: must be an integer, 0 or more")
         return _core.Source.fixed(self._scenario._core, self._mission)
 
     @property
@@ -144,7 +158,7 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
             ValueError: if the waypoint is not finite or has another shape.
             ResetNeeded: before the first ``reset``.
         """
-        point = np.asarray(waypoint, dtype=np.float64)
+        point = numbers("waypoint", waypoint)
         if point.shape != (3,):
             raise ValueError(f"waypoint has shape {point.shape}: must be (3,)")
         return self.episode.action_for((point[0], point[1], point[2]))
@@ -173,6 +187,7 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
             raise ValueError(unknown("option", next(iter(options)), ["episode_seed"]))
         if episode_seed is None:
             episode_seed = int(self.np_random.integers(0, 2**63))
+        episode_seed = check_seed(episode_seed, "episode_seed")
         self._episode = self._source.episode(episode_seed)
         self.plan = None
         info = self._episode.info()
@@ -200,7 +215,7 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
             self.render()
         return observation, reward, terminated, False, episode.info()
 
-    def render(self) -> npt.NDArray[np.uint8] | None:  # type: ignore[override]
+    def render(self) -> npt.NDArray[np.uint8] | None:
         """A frame, (height, width, 3) uint8, or None when it went to the screen."""
         if self.render_mode is None:
             gymnasium.logger.warn("render() does nothing without a render_mode, see gymnasium.make")
@@ -242,4 +257,6 @@ def _as_float32(action: Any, entries: int) -> Action:
         raise ActionError(f"action = {action!r}: must be {entries} numbers, not {array.dtype}")
     if array.shape != (entries,):
         raise ActionError(f"action has shape {array.shape}: must be ({entries},)")
-    return np.ascontiguousarray(array, dtype=np.float32)
+    # A number too large for float32 becomes infinite, which the engine refuses by name.
+    with np.errstate(over="ignore"):
+        return np.ascontiguousarray(array, dtype=np.float32)

@@ -1,9 +1,9 @@
 //! The reward: progress, time, and how the episode ends.
 //!
-//! Sum over an episode: (progress <= 1) - (time <= 0.75) + (1 on arrival, -1 on any failure). An episode
-//! that arrives has at least 1 - r/d0 + 1 - 0.75 > 1, one that fails at most 1 - 1 = 0: whatever the
-//! scenario, nothing that fails out-scores anything that arrives, and of two arrivals at one time limit
-//! the faster scores more.
+//! Sum over an episode: (progress <= 1) - (time <= 0.75) + (1 on arrival, -1 on any failure). With d0 the
+//! distance at the start and r < d0 the goal radius, an episode that arrives has at least
+//! 1 - r/d0 + 1 - 0.75 = 1.25 - r/d0 > 0, one that fails less than 1 - 1 = 0: whatever the scenario,
+//! nothing that fails out-scores anything that arrives, and of two arrivals the faster scores more.
 
 use crate::episode::Outcome;
 
