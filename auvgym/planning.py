@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from numbers import Integral
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from auvgym import _core
+from auvgym._arrays import numbers
 from auvgym._names import unknown
 from auvgym.scenario import check_seed, parameters_json
 from auvgym.world import World
@@ -95,8 +97,8 @@ def plan(
         _core.plan(
             world._core,
             planner,
-            _point("start", start),
-            _point("goal", goal),
+            None if start is None else _point("start", start),
+            None if goal is None else _point("goal", goal),
             check_seed(seed),
             _parameters(parameters),
         )
@@ -134,10 +136,16 @@ def replan(
         PlanningError, KeyboardInterrupt: as :func:`plan`.
     """
     _check_planner(planner)
-    place = _point("position", position)
-    assert place is not None
+    if isinstance(window, bool) or not isinstance(window, Integral) or window < 1:
+        raise _core.PlanningError(f"window = {window!r}: must be an integer, 1 section or more")
     found = _core.replan(
-        world._core, _path(path), place, planner, check_seed(seed), window, _parameters(parameters)
+        world._core,
+        _path("path", path),
+        _point("position", position),
+        planner,
+        check_seed(seed),
+        int(window),
+        _parameters(parameters),
     )
     return _plan(found)
 
@@ -160,7 +168,8 @@ def path_cost(
     Raises:
         PlanningError: for an unknown cost or option, or a path that is not allowed.
     """
-    return dict(_core.path_cost(world._core, _path(waypoints), cost, _parameters(options)))
+    path = _path("waypoints", waypoints)
+    return dict(_core.path_cost(world._core, path, cost, _parameters(options)))
 
 
 def run_phases(
@@ -202,21 +211,27 @@ def _parameters(parameters: dict[str, Any]) -> str:
         raise _core.PlanningError(str(error)) from error
 
 
-def _point(name: str, point: npt.ArrayLike | None) -> tuple[float, float, float] | None:
-    if point is None:
-        return None
-    try:
-        x, y, z = np.asarray(point, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise _core.PlanningError(f"{name} = {point!r}: must be three numbers, m") from error
-    return float(x), float(y), float(z)
+def _point(name: str, point: npt.ArrayLike) -> tuple[float, float, float]:
+    array = _finite(name, point)
+    if array.shape != (3,):
+        raise _core.PlanningError(f"{name} = {point!r}: must be three numbers, m")
+    return float(array[0]), float(array[1]), float(array[2])
 
 
-def _path(path: npt.ArrayLike) -> Array:
-    try:
-        array = np.ascontiguousarray(path, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise _core.PlanningError(f"a path must be numbers of shape (n, 3): {error}") from error
+def _path(name: str, path: npt.ArrayLike) -> Array:
+    array = _finite(name, path)
     if array.ndim != 2 or array.shape[1] != 3 or len(array) < 2:
-        raise _core.PlanningError(f"a path has shape {array.shape}: must be (n, 3) with n >= 2")
+        raise _core.PlanningError(f"{name} has shape {array.shape}: must be (n, 3) with n >= 2")
+    return array
+
+
+def _finite(name: str, values: npt.ArrayLike) -> Array:
+    try:
+        array = numbers(name, values)
+    except ValueError as error:
+        raise _core.PlanningError(str(error)) from error
+    wrong = np.argwhere(~np.isfinite(array))
+    if len(wrong):
+        entry = tuple(int(index) for index in wrong[0])
+        raise _core.PlanningError(f"{name}{list(entry)} = {array[entry]}: must be finite")
     return array

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import operator
 import os
 from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from auvgym import _core
 from auvgym._names import unknown
@@ -190,25 +193,38 @@ def parameters_json(parameters: Mapping[str, Any]) -> str:
     """Parameters as JSON; None stands for "not given".
 
     Raises:
-        ValueError: if one of them is no plain finite number, text or flag.
+        ValueError: naming the first that is no plain finite number, text or flag.
     """
-    given = {name: value for name, value in parameters.items() if value is not None}
+    given = (item for item in parameters.items() if item[1] is not None)
+    return (
+        "{" + ", ".join(f"{json.dumps(name)}: {_json(name, value)}" for name, value in given) + "}"
+    )
+
+
+def _json(name: str, value: Any) -> str:
     try:
-        return json.dumps(given, allow_nan=False)
+        return json.dumps(value, allow_nan=False, default=_plain)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"parameters {given!r}: {error}") from error
+        message = f"{name} = {value!r}: must be a finite number, text or flag ({error})"
+        raise ValueError(message) from error
 
 
-def check_seed(seed: int) -> int:
-    """The seed as a Python int.
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"it is a {type(value).__name__}")
+
+
+def check_seed(seed: int, name: str = "seed") -> int:
+    """Give the seed as a Python int.
 
     Raises:
         ValueError: if it is not an integer in 0 .. 2**64 - 1.
     """
     try:
-        value = seed.__index__()
-    except AttributeError:
-        raise ValueError(f"seed = {seed!r}: must be an integer") from None
+        value = operator.index(seed)
+    except TypeError:
+        raise ValueError(f"{name} = {seed!r}: must be an integer") from None
     if not 0 <= value < 2**64:
-        raise ValueError(f"seed = {value}: must lie in 0 .. 2**64 - 1")
+        raise ValueError(f"{name} = {value}: must lie in 0 .. 2**64 - 1")
     return value

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+from numbers import Real
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from auvgym import _core
+from auvgym._arrays import numbers
 from auvgym.scenario import Scenario, check_seed, resolve_scenario
 
 Array = npt.NDArray[np.float64]
@@ -92,7 +94,7 @@ class World:
 
     @time_s.setter
     def time_s(self, value: float) -> None:
-        self._core.time_s = value
+        self._core.time_s = _time(value)
 
     def current(self, points: npt.ArrayLike, time_s: float | None = None) -> Array:
         """Velocity of the water, (n, 3) m/s, at points (n, 3) m; its third column is zero.
@@ -104,7 +106,7 @@ class World:
         Raises:
             ValueError: if a point or the time is not finite, or the shape is wrong.
         """
-        return self._core.current(_rows(points, 3), time_s)
+        return self._core.current(_rows(points, 3), _maybe_time(time_s))
 
     def clearance(self, points: npt.ArrayLike, time_s: float | None = None) -> Array:
         """Signed distance, (n,) m, from points (n, 3) m to the nearest solid.
@@ -115,7 +117,7 @@ class World:
         Raises:
             ValueError: if a point or the time is not finite, or the shape is wrong.
         """
-        return self._core.clearance(_rows(points, 3), time_s)
+        return self._core.clearance(_rows(points, 3), _maybe_time(time_s))
 
     def floor_depth(self, points: npt.ArrayLike) -> Array:
         """Depth of the sea floor, (n,) m, at points (n, 2) m; infinite where there is none.
@@ -127,16 +129,21 @@ class World:
 
     def snapshot(self, time_s: float | None = None) -> dict[str, Any]:
         """Every obstacle, vortex and peak with its numbers at a time, as a plain dictionary."""
-        numbers: dict[str, Any] = json.loads(self._core.snapshot_json(time_s))
+        numbers: dict[str, Any] = json.loads(self._core.snapshot_json(_maybe_time(time_s)))
         return numbers
 
     def apply_change(self, vehicle: npt.ArrayLike) -> bool:
         """Change the map as when a vehicle at (3,) m has travelled the change distance.
 
         Returns whether anything was left to change.
+
+        Raises:
+            ValueError: if the vehicle's place is not finite or has another shape.
         """
-        x, y, z = _rows(vehicle, 3)[0]
-        return self._core.apply_change((x, y, z))
+        place = numbers("vehicle", vehicle)
+        if place.shape != (3,):
+            raise ValueError(f"vehicle has shape {place.shape}: must be (3,)")
+        return self._core.apply_change((float(place[0]), float(place[1]), float(place[2])))
 
     def __copy__(self) -> World:
         return World._of(self._core.copy())
@@ -168,12 +175,19 @@ def _restore(
 
 def _rows(points: npt.ArrayLike, width: int) -> Array:
     """Points as a contiguous (n, width) float64 array; one point becomes one row."""
-    try:
-        array = np.ascontiguousarray(points, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"points must be numbers of shape (n, {width}): {error}") from error
+    array = numbers("points", points)
     if array.ndim == 1:
         array = array[None, :]
     if array.ndim != 2 or array.shape[1] != width:
         raise ValueError(f"points have shape {np.shape(points)}: must be (n, {width})")
     return array
+
+
+def _time(time_s: float) -> float:
+    if isinstance(time_s, bool) or not isinstance(time_s, Real):
+        raise ValueError(f"time_s = {time_s!r}: must be a number, s")
+    return float(time_s)
+
+
+def _maybe_time(time_s: float | None) -> float | None:
+    return None if time_s is None else _time(time_s)

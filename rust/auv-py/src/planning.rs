@@ -72,7 +72,6 @@ pub fn plan<'py>(
 
 /// Re-plans within a window of a global path.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "a call from Python")]
 pub fn replan<'py>(
     py: Python<'py>,
     world: &World,
@@ -110,7 +109,10 @@ pub fn path_cost<'py>(
     terms(py, &cost)
 }
 
-/// The papers' protocol: (cost, feasible, evaluations, window, position) of each phase.
+/// (cost, feasible, evaluations, window, position).
+type Phase = (f64, bool, u64, usize, Vec3);
+
+/// The papers' protocol, phase by phase.
 #[pyfunction]
 pub fn run_phases(
     py: Python<'_>,
@@ -118,7 +120,7 @@ pub fn run_phases(
     planner: &str,
     seed: u64,
     parameters_json: &str,
-) -> PyResult<Vec<(f64, bool, u64, usize, Vec3)>> {
+) -> PyResult<Vec<Phase>> {
     let (scenario, mission) = (world.0.scenario().clone(), world.0.mission_index());
     let settings = protocol::Settings::default();
     let run = run(py, |control| protocol::run(&scenario, mission, planner, seed, parameters_json, settings, control))?;

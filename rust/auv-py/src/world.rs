@@ -85,7 +85,6 @@ impl World {
     }
 
     #[getter]
-    #[expect(clippy::type_complexity, reason = "a pair of arrays")]
     fn domain<'py>(&self, py: Python<'py>) -> (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>) {
         let domain = &self.0.scenario().domain;
         (points::point(py, domain.min_m), points::point(py, domain.max_m))

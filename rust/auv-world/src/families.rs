@@ -189,14 +189,13 @@ impl<'a> Draw<'a> {
         let vortex_draw = self.vortex_draw();
         let vortices = self.vortices(&vortex_draw);
         let every = self.parameters.change_every_m.unwrap_or(6.0 * KM);
-        let change = (every > 0.0).then(|| {
-            Change::Redraw(Redraw {
-                every_m: every,
-                hold_margin_m: MARGIN,
-                obstacle_step_m: if self.dimensions == 2 { 700.0 } else { 500.0 },
-                vortices: Some(vortex_draw),
-            })
-        });
+        let redraw = Redraw {
+            every_m: every,
+            hold_margin_m: MARGIN,
+            obstacle_step_m: if self.dimensions == 2 { 700.0 } else { 500.0 },
+            vortices: Some(vortex_draw),
+        };
+        let change = (every > 0.0).then_some(Change::Redraw(redraw));
         let depth = if self.dimensions == 2 { 0.0 } else { DEPTH };
         let scenario = Scenario {
             schema: SCHEMA,

@@ -4,6 +4,8 @@
 //! call it. Rare calls go to the `libm` crate; `exp` and `acos`, which bound the hot loops, are written
 //! here without branches so that the compiler can run two or more lanes at once.
 
+#![expect(clippy::excessive_precision, reason = "constants as they were published")]
+
 /// A point or vector (x, y, z) in metres, z the depth, positive down.
 pub type Vec3 = [f64; 3];
 /// A horizontal vector (x, y).

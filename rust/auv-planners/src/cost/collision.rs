@@ -34,8 +34,8 @@ pub enum Test {
         map: CellMap,
         /// Only the end point of each segment.
         ends_only: bool,
-        /// Each waypoint in sections and cells: a structure of arrays.
-        places: [Vec<f64>; 3],
+        /// The waypoints of the path under test.
+        places: Places,
     },
 }
 
@@ -83,11 +83,12 @@ impl Test {
                 (0..track.segments()).filter(blocked).count()
             }
             Self::Cells { frame, map, ends_only, places } => {
-                locate(track, frame, map, places);
-                let blocked = |i: &usize| {
-                    if *ends_only { end_blocked(map, places, *i) } else { samples_blocked(map, places, *i) }
-                };
-                (0..track.segments()).filter(blocked).count()
+                places.locate(track, frame, map);
+                if *ends_only {
+                    (0..track.segments()).filter(|i| places.end_blocked(map, *i)).count()
+                } else {
+                    (0..track.segments()).filter(|i| places.samples_blocked(map, *i)).count()
+                }
             }
         }
     }
@@ -124,42 +125,59 @@ fn walk(world: &World, track: &Track, i: usize, required: f64, shortest: f64) ->
     }
 }
 
-/// Writes every waypoint in sections and cells.
-#[inline]
-fn locate(track: &Track, frame: &Frame, map: &CellMap, places: &mut [Vec<f64>; 3]) {
-    let n = track.points();
-    let [sections, across, down] = places;
-    for list in [&mut *sections, &mut *across, &mut *down] {
-        list.resize(n, 0.0);
-    }
-    let points = track.x[..n].iter().zip(&track.y[..n]).zip(&track.z[..n]);
-    let places = sections.iter_mut().zip(across).zip(down);
-    for (((x, y), z), ((section, across), down)) in points.zip(places) {
-        *section = frame.section(*x, *y);
-        [*across, *down] = map.scale(frame.lateral(*x, *y), *z);
-    }
+/// The waypoints in the cell map.
+#[derive(Debug, Clone, Default)]
+pub struct Places {
+    /// Scaled as the map scales them: sections, columns, rows.
+    scaled: [Vec<f64>; 3],
+    cells: Vec<[u32; 3]>,
 }
 
-#[inline]
-fn end_blocked(map: &CellMap, [section, across, down]: &[Vec<f64>; 3], i: usize) -> bool {
-    map.is_blocked_at(section[i + 1], across[i + 1], down[i + 1])
-}
-
-#[inline]
-fn samples_blocked(map: &CellMap, [section, across, down]: &[Vec<f64>; 3], i: usize) -> bool {
-    // From one section to the next all samples lie in one rectangle of cells: is it free altogether?
-    let (low, high) = (section[i].min(section[i + 1]), section[i].max(section[i + 1]));
-    let (from, to) = ([across[i], down[i]], [across[i + 1], down[i + 1]]);
-    if let Some(pair) = map.pair(low, high)
-        && map.is_free_pair(pair, from, to)
-    {
-        return false;
+impl Places {
+    #[inline]
+    fn locate(&mut self, track: &Track, frame: &Frame, map: &CellMap) {
+        let n = track.points();
+        let [sections, across, down] = &mut self.scaled;
+        for list in [&mut *sections, &mut *across, &mut *down] {
+            list.resize(n, 0.0);
+        }
+        self.cells.resize(n, [0; 3]);
+        let points = track.x[..n].iter().zip(&track.y[..n]).zip(&track.z[..n]);
+        let places = sections.iter_mut().zip(across).zip(down);
+        for (((x, y), z), ((section, across), down)) in points.zip(places) {
+            [*section, *across, *down] = map.scale(frame.section(*x, *y), frame.lateral(*x, *y), *z);
+        }
+        for i in 0..n {
+            self.cells[i] = map.cell(self.at(i));
+        }
     }
-    let step = [section[i + 1] - section[i], to[0] - from[0], to[1] - from[1]];
-    (1..=SAMPLES).any(|k| {
-        let part = k as f64 / SAMPLES as f64;
-        map.is_blocked_at(section[i] + part * step[0], from[0] + part * step[1], from[1] + part * step[2])
-    })
+
+    #[inline(always)]
+    fn at(&self, i: usize) -> [f64; 3] {
+        let [section, across, down] = &self.scaled;
+        [section[i], across[i], down[i]]
+    }
+
+    #[inline]
+    fn end_blocked(&self, map: &CellMap, i: usize) -> bool {
+        map.is_blocked_cell(self.cells[i + 1])
+    }
+
+    #[inline]
+    fn samples_blocked(&self, map: &CellMap, i: usize) -> bool {
+        // From one section to the next all samples lie in one rectangle of cells, which may be free.
+        if map.is_free_between(self.cells[i], self.cells[i + 1]) {
+            return false;
+        }
+        let (from, to) = (self.at(i), self.at(i + 1));
+        let step = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
+        let mut samples = [[0.0; 3]; SAMPLES];
+        for (k, sample) in samples.iter_mut().enumerate() {
+            let part = (k + 1) as f64 / SAMPLES as f64;
+            *sample = [from[0] + part * step[0], from[1] + part * step[1], from[2] + part * step[2]];
+        }
+        map.any_blocked(samples)
+    }
 }
 
 /// Discs, listed for each strip between two sections that they reach into.

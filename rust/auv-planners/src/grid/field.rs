@@ -151,7 +151,7 @@ impl TimeField {
         let mut clearance = Vec::with_capacity(total);
         let mut current: Vec<Vec2> = Vec::with_capacity(total);
         for node in 0..total {
-            if node % 4096 == 0 && interrupted() {
+            if node.is_multiple_of(4096) && interrupted() {
                 return false;
             }
             let place = self.place(node);
@@ -179,7 +179,7 @@ impl TimeField {
             }
             done[here] = true;
             self.settled += 1;
-            if self.settled % 1024 == 0 && interrupted() {
+            if self.settled.is_multiple_of(1024) && interrupted() {
                 return false;
             }
             let cell = self.cell(here);

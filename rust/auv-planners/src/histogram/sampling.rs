@@ -24,9 +24,9 @@ impl Sampler {
     /// Room for the histograms of a problem.
     pub fn new(problem: &SectionProblem, settings: &Settings) -> Self {
         let genes = problem.genes();
-        let histograms = Histograms::new(genes, settings.bins, settings.selected);
+        let histograms = Histograms::new(genes, settings.bins(), settings.selected());
         let safe = settings.safe_bins.unwrap_or(problem.has_depth());
-        let (cells, free) = if problem.has_depth() { (settings.bins + 1, 0) } else { (0, settings.bins) };
+        let (cells, free) = if problem.has_depth() { (settings.bins() + 1, 0) } else { (0, settings.bins()) };
         let draws = settings.safe_draws;
         Self { histograms, safe, draws, cells: vec![0; cells * genes], free: vec![true; free * genes] }
     }
@@ -35,7 +35,7 @@ impl Sampler {
     pub fn learn(&mut self, problem: &SectionProblem, settings: &Settings, population: &Population) {
         let learning = if settings.learning { settings.learning_rate } else { 0.0 };
         for gene in 0..problem.genes() {
-            let values = (0..settings.selected).map(|rank| population.ranked(rank)[gene]);
+            let values = (0..settings.selected()).map(|rank| population.ranked(rank)[gene]);
             let best = population.ranked(0)[gene];
             self.histograms.build(gene, values, best, learning, problem.low()[gene], problem.high()[gene]);
         }

@@ -33,10 +33,10 @@ pub enum Smoothing {
 pub struct Settings {
     /// Paths in the population (NP).
     pub population: usize,
-    /// Best paths that the histograms are built from (S).
-    pub selected: usize,
-    /// Bins of each histogram (binNum).
-    pub bins: usize,
+    /// Best paths that the histograms are built from (S); by default half the population.
+    pub selected: Option<usize>,
+    /// Bins of each histogram (binNum); by default as many as are selected.
+    pub bins: Option<usize>,
     /// Whether the selected learn from the best (LTS, eq. 14).
     pub learning: bool,
     /// How far they move towards the best (lambda).
@@ -59,8 +59,8 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             population: 200,
-            selected: 100,
-            bins: 100,
+            selected: None,
+            bins: None,
             learning: true,
             learning_rate: 0.08,
             smooth: true,
@@ -74,6 +74,16 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// S: how many paths the histograms are built from.
+    pub fn selected(&self) -> usize {
+        self.selected.unwrap_or(self.population / 2)
+    }
+
+    /// binNum: how many bins each histogram has.
+    pub fn bins(&self) -> usize {
+        self.bins.unwrap_or(self.selected())
+    }
+
     /// The paper's number of generations for a world of 2 or 3 dimensions.
     pub fn default_generations(dimensions: u8) -> u64 {
         if dimensions == 2 { 100 } else { 300 }
@@ -82,9 +92,9 @@ impl Settings {
 
 impl Parameters for Settings {
     fn check(&self) -> Result<(), PlanError> {
-        within("population", self.population, 2, 100_000)?;
-        within("selected", self.selected, 2, self.population)?;
-        within("bins", self.bins, 2, self.selected)?;
+        within("population", self.population, 4, 100_000)?;
+        within("selected", self.selected(), 2, self.population)?;
+        within("bins", self.bins(), 2, self.selected())?;
         within("learning_rate", self.learning_rate, 0.0, 1.0)?;
         within("smooth_every", self.smooth_every, 1, u64::from(u32::MAX))?;
         within("safe_draws", self.safe_draws, 1, 1_000_000)

@@ -144,31 +144,6 @@ impl CellMap {
         self.blocked.iter().filter(|blocked| **blocked).count() as f64 / self.blocked.len() as f64
     }
 
-    /// The column of a lateral place (m), the nearest one if it lies outside.
-    #[inline]
-    pub fn across_of(&self, lateral: f64) -> usize {
-        clamp((lateral - self.low[0]) * self.density[0], self.across)
-    }
-
-    /// The row of a depth (m), the nearest one if it lies outside.
-    #[inline]
-    pub fn down_of(&self, depth: f64) -> usize {
-        clamp((depth - self.low[1]) * self.density[1], self.down)
-    }
-
-    /// A place in units of cells.
-    #[inline]
-    pub fn scale(&self, lateral: f64, depth: f64) -> [f64; 2] {
-        [(lateral - self.low[0]) * self.density[0], (depth - self.low[1]) * self.density[1]]
-    }
-
-    /// Whether a place given in sections and cells lies in a blocked cell of the nearest section.
-    #[inline]
-    pub fn is_blocked_at(&self, section: f64, across: f64, down: f64) -> bool {
-        let section = clamp(section + 0.5, self.sections);
-        self.is_blocked(section, clamp(across, self.across), clamp(down, self.down))
-    }
-
     /// Whether any cell is free in a rectangle, columns and rows inclusive.
     #[inline]
     pub fn has_free(&self, section: usize, columns: [usize; 2], rows: [usize; 2]) -> bool {
@@ -178,33 +153,86 @@ impl CellMap {
         })
     }
 
-    /// The first of two neighbouring sections to which all places from `low` to `high` are nearest, if
-    /// there are two such.
+    /// The column of a lateral place (m), the nearest one if it lies outside.
     #[inline]
-    pub fn pair(&self, low: f64, high: f64) -> Option<usize> {
-        let (first, last) = (clamp(low + 0.5, self.sections), clamp(high + 0.5, self.sections));
-        (last == first + 1).then_some(first)
+    pub fn across_of(&self, lateral: f64) -> usize {
+        nearest((lateral - self.low[0]) * self.density[0], self.across)
     }
 
-    /// Whether a rectangle of cells, corners given in units of cells, is free on two neighbouring
-    /// sections, the first being `section`.
+    /// The row of a depth (m), the nearest one if it lies outside.
     #[inline]
-    pub fn is_free_pair(&self, section: usize, from: [f64; 2], to: [f64; 2]) -> bool {
+    pub fn down_of(&self, depth: f64) -> usize {
+        nearest((depth - self.low[1]) * self.density[1], self.down)
+    }
+
+    /// A place given in sections, metres across and metres of depth: shifted and scaled so that whole
+    /// parts number sections, columns and rows.
+    #[inline]
+    pub fn scale(&self, section: f64, lateral: f64, depth: f64) -> [f64; 3] {
+        [section + 0.5, (lateral - self.low[0]) * self.density[0], (depth - self.low[1]) * self.density[1]]
+    }
+
+    /// Section, column and row of a scaled place, the nearest ones if it lies outside.
+    #[inline(always)]
+    pub fn cell(&self, [section, across, down]: [f64; 3]) -> [u32; 3] {
+        [nearest(section, self.sections), nearest(across, self.across), nearest(down, self.down)].map(|i| i as u32)
+    }
+
+    /// Whether a cell is blocked.
+    #[inline]
+    pub fn is_blocked_cell(&self, cell: [u32; 3]) -> bool {
+        let [section, across, down] = cell.map(|i| i as usize);
+        self.is_blocked(section, across, down)
+    }
+
+    /// Whether any of several scaled places lies in a blocked cell.
+    #[inline]
+    pub fn any_blocked<const N: usize>(&self, places: [[f64; 3]; N]) -> bool {
+        // Numbered in floating point, where all places are worked on at once.
+        let (across, down) = (self.across as f64, self.down as f64);
+        let mut index = [0; N];
+        for (index, place) in index.iter_mut().zip(&places) {
+            let row = floor(place[0], self.sections) * down + floor(place[2], self.down);
+            *index = whole(row * across + floor(place[1], self.across));
+        }
+        index.iter().any(|index| self.blocked[*index])
+    }
+
+    /// Whether the rectangle between two cells on neighbouring sections is free on both; `false` for cells
+    /// that are not on neighbouring sections.
+    #[inline]
+    pub fn is_free_between(&self, from: [u32; 3], to: [u32; 3]) -> bool {
+        let pair = from[0].min(to[0]);
+        if from[0].max(to[0]) != pair + 1 {
+            return false;
+        }
         let width = self.across + 1;
-        let table = &self.pairs[section * width * (self.down + 1)..][..width * (self.down + 1)];
-        let (a, b) = (clamp(from[0], self.across), clamp(to[0], self.across));
-        let (left, right) = (a.min(b), a.max(b) + 1);
-        let (a, b) = (clamp(from[1], self.down), clamp(to[1], self.down));
-        let (top, bottom) = (a.min(b) * width, (a.max(b) + 1) * width);
+        let table = &self.pairs[pair as usize * width * (self.down + 1)..][..width * (self.down + 1)];
+        let (left, right) = (from[1].min(to[1]) as usize, from[1].max(to[1]) as usize + 1);
+        let (top, bottom) = (from[2].min(to[2]) as usize * width, (from[2].max(to[2]) as usize + 1) * width);
         table[bottom + right] + table[top + left] == table[top + right] + table[bottom + left]
     }
 }
 
-/// The cell that holds `place`, the nearest one if it lies outside (or is not a number).
+/// The whole part of `place`, the nearest of 0 .. count - 1 if it lies outside.
 #[inline(always)]
-fn clamp(place: f64, count: usize) -> usize {
-    // Through i32, which one machine instruction makes.
-    (place as i32).clamp(0, count as i32 - 1) as usize
+fn floor(place: f64, count: usize) -> f64 {
+    let last = (count - 1) as f64;
+    let place = if place > 0.0 { place } else { 0.0 };
+    let place = if place < last { place } else { last };
+    place.floor()
+}
+
+/// A whole number below 2^32 as an integer: adding 2^52 leaves it in the low bits, without the checks that
+/// a cast makes.
+#[inline(always)]
+fn whole(number: f64) -> usize {
+    (number + 4_503_599_627_370_496.0).to_bits() as u32 as usize
+}
+
+#[inline(always)]
+fn nearest(place: f64, count: usize) -> usize {
+    whole(floor(place, count))
 }
 
 #[cfg(test)]
@@ -257,8 +285,10 @@ mod tests {
                 let free = cells
                     .into_iter()
                     .all(|(a, b)| !map.is_blocked(section, a, b) && !map.is_blocked(section + 1, a, b));
-                let (from, to) = ([i as f64 + 2.3, k as f64 + 0.2], [i as f64 + 0.9, k as f64 + 1.6]);
-                assert_eq!(map.is_free_pair(section, from, to), free);
+                let (from, to) =
+                    ([section as u32, i as u32 + 2, k as u32], [section as u32 + 1, i as u32, k as u32 + 1]);
+                assert_eq!(map.is_free_between(from, to), free);
+                assert_eq!(map.is_free_between(to, from), free);
             }
         }
     }

@@ -1,0 +1,59 @@
+"""``auvgym evaluate``: one policy over many episodes of one environment, or over a suite."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from auvgym.cli.console import output, parse_settings
+
+
+def evaluate(
+    policy: Annotated[
+        str, typer.Option("--policy", help="A name of `auvgym list policies`, or module:Class.")
+    ],
+    environment: Annotated[str, typer.Option("--env", help="Environment id.")] = "AUVDynamic2D-v0",
+    difficulty: Annotated[
+        str | None, typer.Option(help="easy, normal or hard (default: normal).")
+    ] = None,
+    scenario: Annotated[
+        str, typer.Option(help="A shipped scenario or a TOML file; by default each seed draws one.")
+    ] = "",
+    episodes: Annotated[int, typer.Option(help="How many seeds to fly.")] = 64,
+    first_seed: Annotated[int, typer.Option(help="The first of them.")] = 0,
+    suite: Annotated[
+        str | None,
+        typer.Option(help="Fly this suite instead (a name, or a TOML file)."),
+    ] = None,
+    seed: Annotated[int, typer.Option(help="The policy's own seed.")] = 0,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", help="A parameter of the policy, key=value; may be repeated."),
+    ] = None,
+    workers: Annotated[int, typer.Option(help="Processes to fly in.")] = 1,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Keep the episodes in FOLDER/results.db, and go on from there."),
+    ] = None,
+) -> None:
+    """Evaluate one policy: success with its interval, time, energy, cost.
+
+    [dim]Example:[/] auvgym evaluate --policy straight --difficulty hard --episodes 512 --workers 2
+    """
+    from auvgym import evaluation
+    from auvgym.cli.flying import fly_with_progress, show
+
+    instances = (
+        evaluation.load_suite(suite)
+        if suite is not None
+        else evaluation.single_suite(environment, episodes, difficulty, scenario, first_seed)
+    )
+    spec = evaluation.PolicySpec(policy, seed, parse_settings(settings))
+    path = None if out is None else out / "results.db"
+    with evaluation.Store(path) as store:
+        results = fly_with_progress(instances, [spec], store, workers)
+    show(results)
+    if path is not None:
+        output().print(f"Episodes: {path}", soft_wrap=True)

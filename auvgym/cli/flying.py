@@ -1,0 +1,90 @@
+"""Running a suite from the command line: progress bar, Ctrl-C, tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import typer
+
+from auvgym.cli.console import INTERRUPTED, messages, output
+
+if TYPE_CHECKING:
+    from auvgym.evaluation import EpisodeResult, PolicySpec, Store, Suite
+
+
+def fly_with_progress(
+    suite: Suite, specs: Sequence[PolicySpec], store: Store, workers: int
+) -> list[EpisodeResult]:
+    """Run ``suite``; on Ctrl-C say what is kept and how to go on, and exit with 130."""
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
+    from auvgym import evaluation
+
+    console = messages()
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=None),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+        console=console,
+        disable=not console.is_terminal,
+        transient=True,
+        expand=True,
+    )
+    total = len(suite.instances) * len(specs)
+    with bar:
+        # What an earlier run left is no measure of this one's speed: it is there from the start.
+        progress = bar.add_task(suite.name, total=total, completed=_kept(store, suite, specs))
+
+        def on_episode(result: EpisodeResult, done: int, total: int) -> None:
+            bar.update(progress, completed=done)
+
+        try:
+            return evaluation.run(suite, specs, store, workers, on_episode)
+        except KeyboardInterrupt:
+            bar.stop()
+            kept = _kept(store, suite, specs)
+            text = (
+                "Stopped. Nothing is kept without --out."
+                if store.path is None
+                else f"Stopped. {kept} of {total} episodes are kept in {store.path}; "
+                "the same command goes on from there."
+            )
+            console.print(text, style="yellow", markup=False, soft_wrap=True)
+            raise typer.Exit(INTERRUPTED) from None
+
+
+def show(results: Sequence[EpisodeResult]) -> None:
+    """Print the ranked tables, and the first error of each policy that had one."""
+    from auvgym import evaluation
+    from auvgym.cli.tables import explanation, fitting_columns, ranked_tables
+
+    console = output()
+    summaries = evaluation.summarise(results)
+    columns = fitting_columns(summaries, console.width)
+    for table in ranked_tables(summaries, columns):
+        console.print(table)
+        console.print()
+    console.print(explanation(columns), style="dim")
+    failed = {result.policy: result for result in reversed(results) if result.outcome == "error"}
+    for policy, result in sorted(failed.items()):
+        text = f"{policy}: error in {result.environment} seed {result.seed}: {result.error}"
+        messages().print(text, style="yellow", markup=False, soft_wrap=True)
+
+
+def _kept(store: Store, suite: Suite, specs: Sequence[PolicySpec]) -> int:
+    """How many episodes of this run the store holds."""
+    from auvgym.evaluation.store import key
+
+    finished = store.finished(suite)
+    return sum(key(suite, spec, one) in finished for spec in specs for one in suite.instances)

@@ -1,0 +1,43 @@
+"""Evaluation: suites of frozen instances, a runner that keeps what ends, and a ranking.
+
+``run(load_suite("demo"), [PolicySpec("straight")], Store("results.db"))`` flies and stores,
+``summarise(results)`` ranks, ``replay(result)`` flies a stored episode again and compares.
+"""
+
+from __future__ import annotations
+
+from auvgym.evaluation.flight import Flight
+from auvgym.evaluation.replay import Replay, ReplayError, replay
+from auvgym.evaluation.result import EpisodeResult, PolicySpec
+from auvgym.evaluation.runner import run
+from auvgym.evaluation.store import Store, StoreError
+from auvgym.evaluation.suite import (
+    Instance,
+    Suite,
+    SuiteError,
+    list_suites,
+    load_suite,
+    single_suite,
+)
+from auvgym.evaluation.summary import PolicySummary, summarise, wilson_interval
+
+__all__ = [
+    "EpisodeResult",
+    "Flight",
+    "Instance",
+    "PolicySpec",
+    "PolicySummary",
+    "Replay",
+    "ReplayError",
+    "Store",
+    "StoreError",
+    "Suite",
+    "SuiteError",
+    "list_suites",
+    "load_suite",
+    "replay",
+    "run",
+    "single_suite",
+    "summarise",
+    "wilson_interval",
+]

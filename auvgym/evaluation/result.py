@@ -1,0 +1,105 @@
+"""What one episode leaves behind: the row that is stored, ranked and replayed."""
+
+from __future__ import annotations
+
+import json
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from auvgym.evaluation.suite import Instance
+
+
+@dataclass(frozen=True)
+class PolicySpec:
+    """How to make a policy anew, in any process: name, seed and parameters (plain values)."""
+
+    name: str
+    seed: int = 0
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def parameters_json(self) -> str:
+        """The parameters as stored: JSON with sorted keys, so that equal ones are equal text."""
+        return json.dumps(dict(self.parameters), sort_keys=True)
+
+
+@dataclass(frozen=True)
+class EpisodeResult:
+    """One row of the results. SI units; ``None`` where a figure does not exist.
+
+    Attributes:
+        suite, suite_hash: the suite it belongs to.
+        policy, policy_seed, parameters, knows: who flew; parameters as JSON.
+        environment, difficulty, scenario, seed: the instance.
+        scenario_hash: content hash of the world that was met.
+        engine_version: version of the package that flew it.
+        outcome: goal, collision, out_of_bounds, energy, timeout, or error (the policy failed).
+        error: the failure's text, else empty.
+        success: 1 or 0.
+        score: success * T_ref / clip(T, T_ref, 8 T_ref), T_ref = ``still_water_time_s``.
+        time_s, energy_j, path_length_m, min_clearance_m, distance_to_goal_m: at the end.
+        cost: the LFHH paper's cost of the flown path, see :func:`auvgym.evaluation.flight.cost`.
+        time_limit_s, still_water_time_s: the limit, and the straight line in still water.
+        steps: environment steps flown.
+        reward: the sum of rewards.
+        evaluations, replans: what the policy counted.
+        planning_seconds: wall clock spent planning; the one column that is not reproducible.
+        actions: zlib-compressed float32 bytes of the (steps, d) actions, C order.
+    """
+
+    suite: str
+    suite_hash: str
+    policy: str
+    policy_seed: int
+    parameters: str
+    knows: str
+    environment: str
+    difficulty: str
+    scenario: str
+    seed: int
+    scenario_hash: str
+    engine_version: str
+    outcome: str
+    error: str
+    success: int
+    score: float
+    time_s: float
+    energy_j: float
+    path_length_m: float
+    min_clearance_m: float | None
+    distance_to_goal_m: float
+    cost: float | None
+    time_limit_s: float
+    still_water_time_s: float
+    steps: int
+    reward: float
+    evaluations: int
+    replans: int
+    planning_seconds: float
+    actions: bytes
+
+    @property
+    def instance(self) -> Instance:
+        """What was flown."""
+        return Instance(self.environment, self.seed, self.difficulty, self.scenario)
+
+    def action_log(self) -> NDArray[np.float32]:
+        """The actions flown, (steps, d) float32."""
+        return unpack_actions(self.actions, self.steps)
+
+
+def pack_actions(actions: list[NDArray[np.float32]]) -> bytes:
+    """Compress a list of (d,) actions."""
+    joined = np.concatenate(actions) if actions else np.zeros(0, np.float32)
+    return zlib.compress(joined.astype("<f4").tobytes(), level=6)
+
+
+def unpack_actions(packed: bytes, steps: int) -> NDArray[np.float32]:
+    """The reverse of :func:`pack_actions`: (steps, d) float32."""
+    flat = np.frombuffer(zlib.decompress(packed), dtype="<f4").astype(np.float32)
+    return flat.reshape(steps, -1) if steps else flat.reshape(0, 0)

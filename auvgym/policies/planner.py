@@ -1,0 +1,112 @@
+"""Any planner of the engine as a policy: plan, follow, plan again when the map changes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import auvgym
+from auvgym.policies.base import Action, Knows, Observation, ScriptedPolicy, Vector
+
+
+class PlannerPolicy(ScriptedPolicy):
+    """Plans at the start, follows the waypoints, and re-plans within a window at each map change.
+
+    Args:
+        planner: one of ``auvgym.list_planners()``.
+        seed: seed of the planner's random stream.
+        window: how many sections ahead a re-plan looks at first; it grows while no feasible path
+            is found (LFHH's planning window).
+        **parameters: the planner's own, passed on to every plan.
+
+    Raises:
+        PlanningError: an unknown planner or parameter, or a value that is not allowed.
+    """
+
+    knows: Knows = "map"
+
+    def __init__(
+        self, planner: str = "lfhh", seed: int = 0, window: int = 20, **parameters: Any
+    ) -> None:
+        super().__init__(seed)
+        self.name = planner
+        self.description = f"plans with {planner}, re-plans within a window at each change"
+        self.planner = planner
+        self.window = window
+        self.parameters = parameters
+        if parameters:
+            # The planner alone knows its parameters: a plan of one evaluation asks it now, not
+            # in the middle of a run.
+            trial = {**parameters, "max_evaluations": 1}
+            auvgym.plan(auvgym.World("lfhh-2d-1"), planner, seed=seed, **trial)
+
+    def reset(self, env: Any) -> None:
+        """Plan from the start to the goal on the first map."""
+        super().reset(env)
+        self._capture_m = float(self.env.world.scenario.to_dict()["episode"]["capture_radius_m"])
+        self._changes, self._next = 0, 1
+        with self.planning():
+            plan = auvgym.plan(self.env.world, self.planner, seed=self.seed, **self.parameters)
+        self._follow(plan, replans=0)
+
+    def act(self, observation: Observation, info: dict[str, Any]) -> Action:
+        """The action towards the next waypoint of the plan, (d,) float32."""
+        position = self.position
+        if info["map_changes"] != self._changes:
+            self._changes = info["map_changes"]
+            self._replan(position)
+        self._next = next_waypoint(self._waypoints, self._next, position, self._capture_m)
+        return self.steer_to(self._aim())
+
+    def _aim(self) -> Vector:
+        """Where to steer for the next waypoint, (3,) m.
+
+        A leg ends a capture radius before the point it steers to. Aiming that much beyond the
+        waypoint ends it on the path instead of cutting the corner, where the planner left no room.
+        """
+        waypoint: Vector = self._waypoints[self._next]
+        if self._next == len(self._waypoints) - 1:
+            return waypoint
+        leading = waypoint - self._waypoints[self._next - 1]
+        beyond: Vector = self._capture_m * leading / max(float(np.linalg.norm(leading)), 1.0)
+        return waypoint + beyond
+
+    def _replan(self, position: Vector) -> None:
+        with self.planning():
+            plan = auvgym.replan(
+                self.env.world,
+                self._waypoints,
+                position,
+                self.planner,
+                # A new stream for each re-plan: a planner must not repeat an unlucky draw.
+                seed=self.seed + self.replans + 1,
+                window=self.window,
+                **self.parameters,
+            )
+        self._follow(plan, replans=1)
+
+    def _follow(self, plan: Any, replans: int) -> None:
+        self.count(plan.evaluations, replans)
+        self._waypoints: Vector = np.asarray(plan.waypoints, dtype=np.float64)
+        self._next = 1
+        self.env.plan = self._waypoints
+
+
+def next_waypoint(waypoints_m: Vector, index: int, position_m: Vector, capture_m: float) -> int:
+    """The first waypoint from ``index`` on that is neither reached nor passed.
+
+    A waypoint (row of (n, 3) m) is passed once the vehicle crosses the plane through it that
+    stands across the segment leading to it: a vehicle that the current carried beside its path
+    goes on instead of turning back. The last one is never given up.
+    """
+    last = len(waypoints_m) - 1
+    index = min(max(index, 1), last)
+    while index < last:
+        waypoint, leading = waypoints_m[index], waypoints_m[index] - waypoints_m[index - 1]
+        reached = np.linalg.norm(position_m - waypoint) <= capture_m
+        passed = float((position_m - waypoint) @ leading) >= 0.0
+        if not (reached or passed):
+            break
+        index += 1
+    return index
