@@ -9,14 +9,21 @@ use super::track::{LANES, Lanes, Track};
 const CORE_END: f64 = 21.0;
 /// Below this r^2 / zeta^2 a vortex turns like a solid body.
 const CENTRE: f64 = 1e-8;
-/// Where along a segment the ground speed is sampled.
-const SAMPLES: [f64; 3] = [1.0 / 6.0, 0.5, 5.0 / 6.0];
+/// Fewest and most points of a segment at which the ground speed is sampled.
+const SAMPLES: (f64, f64) = (3.0, 64.0);
 /// A ground speed of less than this part of the speed through water counts as beaten.
 const SLOWEST: f64 = 0.05;
 
 /// The current of a world at one time.
 #[derive(Debug, Clone)]
-pub enum Flow {
+pub struct Flow {
+    field: Field,
+    /// Along a path the current is looked at this often (m).
+    resolution: f64,
+}
+
+#[derive(Debug, Clone)]
+enum Field {
     /// Lamb-Oseen vortices and nothing else: x, y, eta / (2 pi), 1 / zeta^2.
     Vortices(Vec<[f64; 4]>),
     /// Anything.
@@ -26,23 +33,25 @@ pub enum Flow {
 impl Flow {
     /// The current of the world as it is now.
     pub fn new(world: &World) -> Self {
+        let domain = &world.scenario().domain;
+        let longest = (0..3).map(|axis| domain.max_m[axis] - domain.min_m[axis]).fold(0.0, f64::max);
         if !world.only_vortices() {
-            return Self::Any(Box::new(world.clone()));
+            return Self { field: Field::Any(Box::new(world.clone())), resolution: longest / 100.0 };
         }
         let field = world.vortices();
         let vortex = |i| {
             let ([x, y], zeta) = (field.centre(i), field.core_radius(i));
             [x, y, field.circulation(i) / std::f64::consts::TAU, 1.0 / (zeta * zeta)]
         };
-        Self::Vortices((0..field.len()).map(vortex).collect())
+        Self { field: Field::Vortices((0..field.len()).map(vortex).collect()), resolution: longest / 40.0 }
     }
 
     /// Velocity (m/s) at one point for each lane.
     #[inline(always)]
     fn velocity(&self, x: &Lanes, y: &Lanes, z: &Lanes) -> [Lanes; 2] {
-        match self {
-            Self::Vortices(vortices) => sum_vortices(vortices, x, y),
-            Self::Any(world) => {
+        match &self.field {
+            Field::Vortices(vortices) => sum_vortices(vortices, x, y),
+            Field::Any(world) => {
                 let (mut u, mut v) = ([0.0; LANES], [0.0; LANES]);
                 for lane in 0..LANES {
                     [u[lane], v[lane]] = world.current([x[lane], y[lane], z[lane]]);
@@ -71,19 +80,22 @@ impl Flow {
     /// Time along each segment (s) for a vehicle of that speed through water (m/s), written to the
     /// track's results; gives the number of segments on which the current beats it.
     ///
-    /// Ground speed is V_par + sqrt(V_w^2 - V_perp^2), sampled at three points. A beaten vehicle is
-    /// charged as if it crept, so that better plans still cost less.
+    /// Ground speed is V_par + sqrt(V_w^2 - V_perp^2), sampled evenly at three points or, where the longest
+    /// segment of the track spans more than three stretches of the world's resolution, at one for each. A
+    /// beaten vehicle is charged as if it crept, so that better plans still cost less.
     pub fn times(&self, track: &mut Track, speed: f64) -> usize {
         let mut slow = [false; LANES];
         let mut beaten = 0;
         let creep = SLOWEST * speed;
+        let longest = track.length[..track.segments()].iter().fold(0.0, |a: f64, b| a.max(*b));
+        let samples = (longest / self.resolution).ceil().clamp(SAMPLES.0, SAMPLES.1);
         for first in (0..track.padded()).step_by(LANES) {
             let (dx, dy) = (lanes(&track.dx, first), lanes(&track.dy, first));
             let length = lanes(&track.length, first);
             let mut slowness = [0.0; LANES];
             slow.fill(false);
-            for sample in SAMPLES {
-                let [x, y, z] = at(track, first, sample);
+            for sample in 0..samples as usize {
+                let [x, y, z] = at(track, first, (sample as f64 + 0.5) / samples);
                 let [u, v] = self.velocity(&x, &y, &z);
                 for lane in 0..LANES {
                     let inverse = if length[lane] > 0.0 { 1.0 / length[lane] } else { 0.0 };
@@ -96,7 +108,7 @@ impl Flow {
                 }
             }
             for lane in 0..LANES {
-                track.result[first + lane] = length[lane] * slowness[lane] / SAMPLES.len() as f64;
+                track.result[first + lane] = length[lane] * slowness[lane] / samples;
                 beaten += usize::from(slow[lane] && first + lane < track.segments());
             }
         }
@@ -189,8 +201,8 @@ mod tests {
     fn velocity_is_that_of_the_world() {
         let world = testing::paper_world("lfhh-3d-1", 0);
         let flow = Flow::new(&world);
-        assert!(matches!(flow, Flow::Vortices(_)));
-        let any = Flow::Any(Box::new(world.clone()));
+        assert!(matches!(flow.field, Field::Vortices(_)));
+        let any = Flow { field: Field::Any(Box::new(world.clone())), resolution: flow.resolution };
         let [x0, y0] = world.vortices().centre(0);
         for i in 0..1000 {
             let far = f64::from(i) * 10.0;
