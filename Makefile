@@ -27,7 +27,7 @@ $(VENV)/.dev: $(BIN)/uv pyproject.toml $(RUST)
 setup: $(VENV)/.dev ## build the engine and install everything that development needs into .venv
 
 demo: $(VENV)/.demo ## run the small leaderboard: a ranked table and results/demo/leaderboard.html
-	$(BIN)/auvgym leaderboard --suite demo --workers $(WORKERS) --out results/demo
+	$(BIN)/auvgym leaderboard --suite demo --fresh --workers $(WORKERS) --out results/demo
 
 test: $(VENV)/.dev ## Rust and Python tests
 	cargo test --workspace --quiet

@@ -226,7 +226,7 @@ def test_a_stopped_leaderboard_goes_on(how: signal.Signals, tmp_path: Path) -> N
     assert 5 <= len(kept) < 4000
     if how is signal.SIGINT:
         assert process.returncode == 130, messages
-        assert seconds < 3.0
+        assert seconds < 5.0  # a second on an idle machine
         assert f"{len(kept)} of 4000 episodes are kept" in messages
         assert "Traceback" not in messages
     # What was kept is what an undisturbed run gives.
@@ -238,7 +238,7 @@ def test_a_stopped_leaderboard_goes_on(how: signal.Signals, tmp_path: Path) -> N
 
 
 def _wait_for_rows(database: Path, process: subprocess.Popen[str], rows: int) -> None:
-    deadline = time.monotonic() + 30.0
+    deadline = time.monotonic() + 60.0
     while time.monotonic() < deadline:
         assert process.poll() is None, process.communicate()
         if database.exists():
@@ -250,4 +250,4 @@ def _wait_for_rows(database: Path, process: subprocess.Popen[str], rows: int) ->
                 # Caught between the file's making and its first table.
                 pass
         time.sleep(0.1)
-    raise AssertionError("no episode was stored in 30 s")
+    raise AssertionError("no episode was stored in 60 s")

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
-from rich.console import Console
 from typer.core import TyperGroup
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 INTERRUPTED = 130  # the shell's code for a command ended by Ctrl-C
 MISTAKE = 2
@@ -19,11 +21,15 @@ _MISTAKES = (ValueError, OSError, ImportError)
 
 def output() -> Console:
     """The console for results; made on each call, so that a test's capture is honoured."""
+    from rich.console import Console
+
     return Console(highlight=False)
 
 
 def messages() -> Console:
     """The console for errors and progress: standard error."""
+    from rich.console import Console
+
     return Console(stderr=True, highlight=False)
 
 
@@ -54,7 +60,7 @@ def print_version(wanted: bool) -> None:
     if wanted:
         import auvgym
 
-        output().print(f"auvgym {auvgym.__version__}")
+        typer.echo(f"auvgym {auvgym.__version__}")
         raise typer.Exit
 
 

@@ -37,6 +37,9 @@ def evaluate(
         Path | None,
         typer.Option(help="Keep the episodes in FOLDER/results.db, and go on from there."),
     ] = None,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Forget what --out holds of these episodes first.")
+    ] = False,
 ) -> None:
     """Evaluate one policy: success with its interval, time, energy, cost.
 
@@ -53,6 +56,8 @@ def evaluate(
     spec = evaluation.PolicySpec(policy, seed, parse_settings(settings))
     path = None if out is None else out / "results.db"
     with evaluation.Store(path) as store:
+        if fresh:
+            store.forget(instances)
         results = fly_with_progress(instances, [spec], store, workers)
     show(results)
     if path is not None:
