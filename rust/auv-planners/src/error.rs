@@ -1,6 +1,7 @@
 //! What can be wrong with a question to a planner, in words for whoever asked it.
 
 use auv_world::WorldError;
+use auv_world::settings::nearest;
 
 /// A question that cannot be answered. That no path was found is an answer, not an error.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -47,15 +48,7 @@ impl PlanError {
 
     /// An unknown name, with the nearest of the known ones.
     pub(crate) fn unknown(kind: &'static str, name: &str, known: &[&str]) -> Self {
-        /// Less alike than this is no help (Jaro-Winkler similarity).
-        const ALIKE: f64 = 0.7;
-        let likeness = |candidate: &str| strsim::jaro_winkler(&name.to_lowercase(), candidate);
-        let nearest = known
-            .iter()
-            .map(|candidate| (likeness(candidate), *candidate))
-            .filter(|(likeness, _)| *likeness >= ALIKE)
-            .max_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(_, candidate)| candidate.to_owned());
+        let nearest = nearest(name, known.iter().copied()).map(str::to_owned);
         Self::Unknown { kind, name: name.to_owned(), nearest, known: known.join(", ") }
     }
 }

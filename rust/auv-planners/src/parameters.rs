@@ -1,5 +1,6 @@
 //! Parameters as JSON objects: some that every planner has, and the planner's own.
 
+use auv_world::settings::suggest;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
@@ -53,7 +54,7 @@ pub trait Parameters: DeserializeOwned {
 /// # Errors
 /// [`PlanError`] if the text is not such an object or a value is not allowed.
 pub fn parse<P: Parameters>(planner: &str, json: &str) -> Result<(Common, P), PlanError> {
-    let wrong = |message: String| PlanError::Format { planner: planner.to_owned(), message };
+    let wrong = |message: String| PlanError::Format { planner: planner.to_owned(), message: suggest(message) };
     let (common, own) = split(planner, json)?;
     let own: P = read(own).map_err(|message| {
         let hint = if message.contains("unknown field") {
@@ -77,7 +78,7 @@ pub fn parse_common(planner: &str, json: &str) -> Result<Common, PlanError> {
 
 /// The common parameters, and what else there is.
 fn split(planner: &str, json: &str) -> Result<(Common, Map<String, Value>), PlanError> {
-    let wrong = |message: String| PlanError::Format { planner: planner.to_owned(), message };
+    let wrong = |message: String| PlanError::Format { planner: planner.to_owned(), message: suggest(message) };
     let json = if json.trim().is_empty() { "{}" } else { json };
     let mut own: Map<String, Value> = serde_json::from_str(json).map_err(|error| wrong(error.to_string()))?;
     let mut common = Map::new();
@@ -92,15 +93,7 @@ fn split(planner: &str, json: &str) -> Result<(Common, Map<String, Value>), Plan
 }
 
 fn read<T: DeserializeOwned>(object: Map<String, Value>) -> Result<T, String> {
-    serde_path_to_error::deserialize(Value::Object(object)).map_err(|error| {
-        let path = error.path().to_string();
-        // An unknown field is named by the message itself.
-        if path == "." || error.inner().to_string().starts_with("unknown field") {
-            error.inner().to_string()
-        } else {
-            format!("{path}: {}", error.inner())
-        }
-    })
+    auv_world::settings::read(Value::Object(object))
 }
 
 #[cfg(test)]
@@ -131,7 +124,8 @@ mod tests {
         );
         let unknown = message(r#"{"lamda": 1}"#);
         assert!(unknown.contains("unknown field `lamda`") && unknown.contains("`learning_rate`"), "{unknown}");
-        assert!(unknown.contains("`max_evaluations`"), "{unknown}");
+        assert!(unknown.contains("`max_evaluations`") && !unknown.contains("did you mean"), "{unknown}");
+        assert!(message(r#"{"max_evaluation": 1}"#).ends_with("; did you mean `max_evaluations`?"));
         let variant = message(r#"{"cost_options": {"collision": "laser"}}"#);
         assert!(variant.contains("cost_options.collision: unknown variant `laser`"), "{variant}");
         assert!(message(r#"{"cost_options": {"margin_m": 9, "collision": "cells"}}"#).contains("margin_m = 9"));

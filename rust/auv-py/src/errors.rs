@@ -5,7 +5,7 @@ use auv_planners::PlanError;
 use auv_world::WorldError;
 use pyo3::PyErr;
 use pyo3::create_exception;
-use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyValueError};
+use pyo3::exceptions::PyValueError;
 
 create_exception!(
     auvgym,
@@ -30,10 +30,8 @@ pub fn world(error: WorldError) -> PyErr {
     match &error {
         WorldError::Scenario { .. } | WorldError::Format { .. } => ScenarioError::new_err(error.to_string()),
         WorldError::Parameter { .. } => PyValueError::new_err(error.to_string()),
-        WorldError::File { file, message } if !file.exists() && file.parent().is_none_or(std::path::Path::exists) => {
-            PyFileNotFoundError::new_err(format!("{}: {message}", file.display()))
-        }
-        WorldError::File { .. } => PyOSError::new_err(error.to_string()),
+        // FileNotFoundError, PermissionError, ...: as Python itself would say it.
+        WorldError::File { kind, .. } => std::io::Error::new(*kind, error.to_string()).into(),
     }
 }
 

@@ -4,6 +4,7 @@ use std::cell::RefCell;
 
 use auv_planners::{Control, Cost, CostOptions, CostTerms, PlanError, protocol, registry, replanning};
 use auv_world::math::Vec3;
+use auv_world::settings;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -103,8 +104,9 @@ pub fn path_cost<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let rows = points::rows::<3>("waypoints", &waypoints)?;
     let cost = Cost::from_name(cost).map_err(errors::planning)?;
-    let options: CostOptions = serde_json::from_str(options_json)
-        .map_err(|error| errors::PlanningError::new_err(format!("options of the cost: {error}")))?;
+    let wrong = |message: String| errors::PlanningError::new_err(format!("options of the cost: {message}"));
+    let options = serde_json::from_str(options_json).map_err(|error| wrong(error.to_string()))?;
+    let options: CostOptions = settings::read(options).map_err(|message| wrong(settings::suggest(message)))?;
     let cost = auv_planners::path_cost(&world.0, rows, cost, &options).map_err(errors::planning)?;
     terms(py, &cost)
 }

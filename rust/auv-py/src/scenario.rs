@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use auv_world::families::{FAMILIES, Parameters, generate};
+use auv_world::settings;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
@@ -17,7 +18,9 @@ pub fn families() -> Vec<&'static str> {
 
 /// Parameters of a family from JSON.
 pub fn parameters(json: &str) -> PyResult<Parameters> {
-    serde_json::from_str(json).map_err(|error| PyValueError::new_err(format!("parameters of the family: {error}")))
+    let wrong = |message: String| PyValueError::new_err(format!("parameters of the family: {message}"));
+    let value = serde_json::from_str(json).map_err(|error| wrong(error.to_string()))?;
+    settings::read(value).map_err(|message| wrong(settings::suggest(message)))
 }
 
 /// Everything a world is made of, checked.
@@ -44,7 +47,9 @@ impl Scenario {
 
     #[staticmethod]
     fn generate(family: &str, seed: u64, parameters_json: &str) -> PyResult<Self> {
-        generate(family, seed, &parameters(parameters_json)?).map(Self).map_err(errors::world)
+        let scenario = generate(family, seed, &parameters(parameters_json)?).map_err(errors::world)?;
+        scenario.check().map_err(errors::world)?;
+        Ok(Self(scenario))
     }
 
     fn to_toml(&self) -> PyResult<String> {

@@ -30,6 +30,8 @@ pub enum WorldError {
     File {
         /// The file.
         file: PathBuf,
+        /// What kind of failure it is.
+        kind: std::io::ErrorKind,
         /// The operating system's words.
         message: String,
     },

@@ -17,6 +17,7 @@ pub mod projection;
 pub mod rng;
 pub mod scenario;
 pub mod seabed;
+pub mod settings;
 pub mod world;
 
 pub use error::WorldError;

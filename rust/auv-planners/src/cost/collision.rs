@@ -5,7 +5,7 @@ use auv_world::math::{Vec2, Vec3};
 
 use super::options::{Collision, CostOptions};
 use super::track::Track;
-use crate::sections::{CellMap, Frame};
+use crate::sections::{CellMap, Frame, nearest};
 
 /// Points of a segment that are looked up in the cell map, at 1/8, 2/8, ... 8/8 of its way.
 const SAMPLES: usize = 8;
@@ -187,7 +187,8 @@ pub struct Strips {
     margin: f64,
     discs: Vec<Disc>,
     first: Vec<u32>,
-    section: Vec<f64>,
+    /// First and last strip of each waypoint of the path under test.
+    span: Vec<[u32; 2]>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -214,7 +215,7 @@ impl Strips {
             }));
             first.push(discs.len() as u32);
         }
-        Self { frame, margin, discs, first, section: Vec::new() }
+        Self { frame, margin, discs, first, span: Vec::new() }
     }
 
     fn strips(&self) -> usize {
@@ -232,9 +233,11 @@ impl Strips {
     #[inline]
     fn blocked(&mut self, track: &Track) -> usize {
         let n = track.points();
-        self.section.resize(n, 0.0);
-        for (section, (x, y)) in self.section.iter_mut().zip(track.x.iter().zip(&track.y)) {
-            *section = self.frame.section(*x, *y);
+        let strips = self.strips();
+        self.span.resize(n, [0; 2]);
+        for (span, (x, y)) in self.span.iter_mut().zip(track.x.iter().zip(&track.y)) {
+            let section = self.frame.section(*x, *y);
+            *span = [strip_of(section + OVERLAP, strips) as u32, strip_of(section - OVERLAP, strips) as u32];
         }
         let segments = track.segments();
         let ends = if self.margin > 0.0 {
@@ -242,26 +245,26 @@ impl Strips {
         } else {
             [f64::INFINITY; 2]
         };
-        let strips = self.strips();
         let blocked = |i: &usize| {
             let i = *i;
-            let (low, high) = (
-                self.section[i].min(self.section[i + 1]) + OVERLAP,
-                self.section[i].max(self.section[i + 1]) - OVERLAP,
-            );
-            let first = strip_of(low, strips);
-            let last = strip_of(high, strips).max(first);
+            let (from, to) = (self.span[i], self.span[i + 1]);
+            let first = from[0].min(to[0]);
+            let last = from[1].max(to[1]).max(first);
             let required = required(self.margin, ends, i, segments);
-            let discs = &self.discs[self.first[first] as usize..self.first[last + 1] as usize];
+            let discs = &self.discs[self.first[first as usize] as usize..self.first[last as usize + 1] as usize];
             let (x, y, dx, dy) = (track.x[i], track.y[i], track.dx[i], track.dy[i]);
             let square = dx * dx + dy * dy;
-            let inverse = if square > 0.0 { 1.0 / square } else { 0.0 };
-            discs.iter().any(|disc| {
+            // Without branches or divisions: the disc's centre is near the start, near the end, or beside
+            // the segment and near its line.
+            discs.iter().fold(false, |hit, disc| {
                 let (cx, cy) = (disc.centre[0] - x, disc.centre[1] - y);
-                let part = ((cx * dx + cy * dy) * inverse).clamp(0.0, 1.0);
-                let (ex, ey) = (cx - part * dx, cy - part * dy);
                 let reach = (disc.radius + required).max(0.0);
-                ex * ex + ey * ey < reach * reach
+                let reach2 = reach * reach;
+                let (along, across) = (cx * dx + cy * dy, cx * dy - cy * dx);
+                let from_start = cx * cx + cy * cy;
+                let from_end = from_start - 2.0 * along + square;
+                let beside = (along > 0.0) & (along < square) & (across * across < reach2 * square);
+                hit | (from_start < reach2) | (from_end < reach2) | beside
             })
         };
         (0..segments).filter(blocked).count()
@@ -271,5 +274,5 @@ impl Strips {
 /// The strip that holds a place, the nearest one if it lies outside.
 #[inline(always)]
 fn strip_of(section: f64, strips: usize) -> usize {
-    (section.floor() as i32).clamp(0, strips as i32 - 1) as usize
+    nearest(section, strips)
 }

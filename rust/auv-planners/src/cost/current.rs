@@ -24,8 +24,8 @@ pub struct Flow {
 
 #[derive(Debug, Clone)]
 enum Field {
-    /// Lamb-Oseen vortices and nothing else: x, y, eta / (2 pi), 1 / zeta^2.
-    Vortices(Vec<[f64; 4]>),
+    /// Lamb-Oseen vortices and nothing else: x, y, eta / (2 pi), 1 / zeta^2, and the square of the radius where the core ends.
+    Vortices(Vec<[f64; 5]>),
     /// Anything.
     Any(Box<World>),
 }
@@ -41,7 +41,7 @@ impl Flow {
         let field = world.vortices();
         let vortex = |i| {
             let ([x, y], zeta) = (field.centre(i), field.core_radius(i));
-            [x, y, field.circulation(i) / std::f64::consts::TAU, 1.0 / (zeta * zeta)]
+            [x, y, field.circulation(i) / std::f64::consts::TAU, 1.0 / (zeta * zeta), CORE_END * zeta * zeta]
         };
         Self { field: Field::Vortices((0..field.len()).map(vortex).collect()), resolution: longest / 40.0 }
     }
@@ -151,9 +151,9 @@ fn decay(s: f64) -> f64 {
 
 /// The sum of Lamb-Oseen vortices (LFHH eq. 3-4).
 #[inline(always)]
-fn sum_vortices(vortices: &[[f64; 4]], x: &Lanes, y: &Lanes) -> [Lanes; 2] {
+fn sum_vortices(vortices: &[[f64; 5]], x: &Lanes, y: &Lanes) -> [Lanes; 2] {
     let (mut u, mut v) = ([0.0; LANES], [0.0; LANES]);
-    for &[x0, y0, strength, inverse_core2] in vortices {
+    for &[x0, y0, strength, inverse_core2, core_end2] in vortices {
         let (mut dx, mut dy, mut r2) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
             dx[lane] = x[lane] - x0;
@@ -162,11 +162,10 @@ fn sum_vortices(vortices: &[[f64; 4]], x: &Lanes, y: &Lanes) -> [Lanes; 2] {
         }
         let mut factor = [strength; LANES];
         // Most vortices are far from most segments: no exponential then.
-        let core_end2 = CORE_END / inverse_core2;
         if r2.iter().fold(false, |near, r2| near | (*r2 < core_end2)) {
             for lane in 0..LANES {
                 let s = r2[lane] * inverse_core2;
-                factor[lane] *= if s < CORE_END { 1.0 - decay(s) } else { 1.0 };
+                factor[lane] *= 1.0 - decay(s);
                 // At the centre (1 - exp(-s)) / r^2 tends to 1 / zeta^2.
                 let centre = s < CENTRE;
                 factor[lane] = if centre { strength * inverse_core2 } else { factor[lane] };

@@ -6,6 +6,7 @@ use crate::error::{PlanError, within};
 use crate::parameters::Parameters;
 use crate::plan::Plan;
 use crate::registry::Request;
+use crate::sections::check_place;
 
 impl Parameters for Settings {
     fn check(&self) -> Result<(), PlanError> {
@@ -22,13 +23,8 @@ impl Parameters for Settings {
 /// [`PlanError`] naming the parameter, start or goal that is not allowed.
 pub fn plan_astar(request: &Request<'_>) -> Result<Plan, PlanError> {
     let (common, settings) = request.parse::<Settings>()?;
-    let domain = &request.world.scenario().domain;
-    for (name, point) in [("start", request.start), ("goal", request.goal)] {
-        for axis in 0..3 {
-            let (low, high) = (domain.min_m[axis] - domain.margin_m, domain.max_m[axis] + domain.margin_m);
-            within(&format!("{name}[{axis}]"), point[axis], low, high)?;
-        }
-    }
+    check_place(request.world, "start", request.start)?;
+    check_place(request.world, "goal", request.goal)?;
     let found = plan(request.world, request.start, request.goal, settings, &mut || request.control.interrupted());
     let (waypoints, feasible, evaluations) = match &found {
         Some(path) => (path.waypoints.clone(), path.feasible, path.evaluations),

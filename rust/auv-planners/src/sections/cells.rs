@@ -230,8 +230,9 @@ fn whole(number: f64) -> usize {
     (number + 4_503_599_627_370_496.0).to_bits() as u32 as usize
 }
 
+/// The whole part of `place` as an index, the nearest of 0 .. count - 1 if it lies outside.
 #[inline(always)]
-fn nearest(place: f64, count: usize) -> usize {
+pub(crate) fn nearest(place: f64, count: usize) -> usize {
     whole(floor(place, count))
 }
 

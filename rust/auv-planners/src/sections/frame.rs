@@ -72,7 +72,9 @@ impl Frame {
         (low, high.max(low))
     }
 
-    fn right(&self) -> Vec2 {
+    /// Unit vector to the right.
+    #[inline]
+    pub fn right(&self) -> Vec2 {
         [self.along[1], -self.along[0]]
     }
 

@@ -6,5 +6,7 @@ mod frame;
 mod problem;
 
 pub use cells::CellMap;
+pub(crate) use cells::nearest;
 pub use frame::Frame;
 pub use problem::SectionProblem;
+pub(crate) use problem::check_place;

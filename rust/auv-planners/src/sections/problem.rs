@@ -25,6 +25,8 @@ pub struct SectionProblem {
     start: Vec3,
     target: Vec3,
     sections: Vec<usize>,
+    /// x and y of each section at lateral place 0.
+    bases: [Vec<f64>; 2],
     low: Vec<f64>,
     high: Vec<f64>,
     level: f64,
@@ -58,7 +60,8 @@ impl SectionProblem {
             high.extend(sections.iter().map(|_| bottom));
         }
         let world = world.clone();
-        Ok(Self { world, frame, cells, evaluator, start, target, sections, low, high, level: top })
+        let bases = [0, 1].map(|axis| sections.iter().map(|section| frame.base(*section)[axis]).collect());
+        Ok(Self { world, frame, cells, evaluator, start, target, sections, bases, low, high, level: top })
     }
 
     /// Number of inner waypoints.
@@ -129,12 +132,22 @@ impl SectionProblem {
     #[inline]
     pub fn evaluate(&mut self, genes: &[f64]) -> CostTerms {
         let inner = self.inner();
-        self.evaluator.track().set(0, self.start);
-        for i in 0..inner {
-            let point = self.waypoint(genes, i);
-            self.evaluator.track().set(i + 1, point);
+        let right = self.frame.right();
+        let track = self.evaluator.track();
+        track.set(0, self.start);
+        for axis in 0..2 {
+            let place = if axis == 0 { &mut track.x } else { &mut track.y };
+            let bases = &self.bases[axis];
+            for ((place, base), lateral) in place[1..=inner].iter_mut().zip(bases).zip(genes) {
+                *place = base + right[axis] * lateral;
+            }
         }
-        self.evaluator.track().set(inner + 1, self.target);
+        if genes.len() > inner {
+            track.z[1..=inner].copy_from_slice(&genes[inner..]);
+        } else {
+            track.z[1..=inner].fill(self.level);
+        }
+        track.set(inner + 1, self.target);
         self.evaluator.terms()
     }
 }

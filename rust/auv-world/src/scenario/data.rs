@@ -2,7 +2,7 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// What a packed array starts with: little-endian 32-bit floats in base64 follow.
 const PREFIX: &str = "f32le:";
@@ -11,10 +11,15 @@ const PREFIX: &str = "f32le:";
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Data {
-    /// Written out.
-    Numbers(Vec<f64>),
+    /// Written out; NaN is `nan` in TOML and `null` in JSON.
+    Numbers(#[serde(deserialize_with = "numbers")] Vec<f64>),
     /// "f32le:" and base64.
     Packed(String),
+}
+
+fn numbers<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D::Error> {
+    let numbers = Vec::<Option<f64>>::deserialize(deserializer)?;
+    Ok(numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect())
 }
 
 /// Two arrays are equal when their values are, missing ones included.
@@ -65,5 +70,12 @@ mod tests {
         assert_eq!(values.map(f32::to_bits).to_vec(), unpacked.iter().map(|v| v.to_bits()).collect::<Vec<_>>());
         assert!(Data::Packed("f32le:!".into()).values().is_err());
         assert!(Data::Packed("AAAA".into()).values().is_err());
+    }
+
+    #[test]
+    fn missing_values_survive_json() {
+        let data = Data::Numbers(vec![1.0, f64::NAN]);
+        let text = serde_json::to_string(&data).unwrap();
+        assert_eq!((text.as_str(), &serde_json::from_str::<Data>(&text).unwrap()), ("[1.0,null]", &data));
     }
 }
