@@ -1,5 +1,6 @@
 //! The LFHH paper's experiment on the shipped scenarios: mean cost F of the five re-plans, its standard
-//! deviation over the seeds, and the runs in which all five are feasible.
+//! deviation over the seeds, and the runs in which all five are feasible. The maps are this project's own,
+//! with vortices placed so that LFHH comes out at the paper's level: that level is a fit, not a confirmation.
 //!
 //! `cargo run --release -p auv-planners --example protocol [planner [seeds [parameters as JSON]]]`
 

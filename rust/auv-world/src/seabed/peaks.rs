@@ -46,6 +46,8 @@ pub struct PeakFloor {
     along_y: Column,
     /// k = max(a, b) / sigma.
     steepness: Column,
+    /// Height of the highest summit.
+    highest: f64,
 }
 
 impl PeakFloor {
@@ -64,6 +66,7 @@ impl PeakFloor {
             along_x: column(|p| (p.b / p.sigma_m) * (p.b / p.sigma_m)),
             along_y: column(|p| (p.a / p.sigma_m) * (p.a / p.sigma_m)),
             steepness: column(|p| p.a.max(p.b) / p.sigma_m),
+            highest: peaks.peaks.iter().fold(0.0, |highest, peak| peak.height_m.max(highest)),
         }
     }
 
@@ -89,6 +92,9 @@ impl PeakFloor {
     pub fn clearance(&self, point: Vec3, nearest: f64) -> f64 {
         let above = self.floor_depth - point[2];
         let mut best = nearest.min(above);
+        if above - best >= self.highest {
+            return best;
+        }
         let (x, y) = (f64x4::splat(point[0]), f64x4::splat(point[1]));
         let shapes = self.along_x.chunks().zip(self.along_y.chunks()).zip(self.steepness.chunks());
         let peaks = self.x.chunks().zip(self.y.chunks()).zip(self.height.chunks()).zip(shapes);
