@@ -1,4 +1,5 @@
 //! What every plan must satisfy, for every planner by name.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

@@ -9,7 +9,7 @@ pub struct Histograms {
     bins: usize,
     /// `bins + 1` bounds for each gene.
     bounds: Vec<f64>,
-    sorted: Vec<f64>,
+    sorted: Vec<i64>,
 }
 
 impl Histograms {
@@ -43,14 +43,14 @@ impl Histograms {
     ) {
         let sorted = &mut self.sorted;
         sorted.clear();
-        sorted.extend(values.map(|item| item + learning * (best - item)));
-        sorted.sort_unstable_by(f64::total_cmp);
+        sorted.extend(values.map(|item| ordered(item + learning * (best - item))));
+        sorted.sort_unstable();
         let (bins, selected) = (self.bins, sorted.len());
         let bounds = &mut self.bounds[gene * (bins + 1)..][..bins + 1];
         bounds[0] = low;
         for (k, bound) in bounds.iter_mut().enumerate().take(bins).skip(1) {
             let m = k * selected / bins;
-            *bound = (sorted[m - 1] + sorted[m]) / 2.0;
+            *bound = (number(sorted[m - 1]) + number(sorted[m])) / 2.0;
         }
         bounds[bins] = high;
     }
@@ -72,6 +72,24 @@ impl Histograms {
     }
 }
 
+/// An integer that is ordered as the number is: integers sort twice as fast.
+#[inline(always)]
+fn ordered(number: f64) -> i64 {
+    flip(number.to_bits() as i64)
+}
+
+/// The number of such an integer.
+#[inline(always)]
+fn number(ordered: i64) -> f64 {
+    f64::from_bits(flip(ordered) as u64)
+}
+
+/// Turns the order of negative numbers round, whose bits say the magnitude.
+#[inline(always)]
+fn flip(bits: i64) -> i64 {
+    bits ^ (((bits >> 63) as u64) >> 1) as i64
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -91,6 +109,13 @@ mod tests {
         let mut model = Histograms::new(1, 3, 5);
         model.build(0, [1.0, 2.0, 3.0, 4.0, 5.0].into_iter(), 0.0, 0.0, 0.0, 6.0);
         assert_eq!(model.bounds(0), [0.0, 1.5, 3.5, 6.0]);
+    }
+
+    #[test]
+    fn integers_are_ordered_as_their_numbers() {
+        let numbers = [-1e9, -2.5, -1e-9, 0.0, 1e-9, 2.5, 1e9];
+        assert!(numbers.windows(2).all(|pair| ordered(pair[0]) < ordered(pair[1])));
+        assert!(numbers.iter().all(|value| number(ordered(*value)) == *value));
     }
 
     #[test]
