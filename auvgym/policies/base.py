@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Literal, Protocol, runtime_checkable
@@ -58,7 +59,7 @@ class Policy(Protocol):
         ...
 
 
-class ScriptedPolicy:
+class ScriptedPolicy(ABC):
     """Base of the policies that ship with auvgym: holds the episode's environment and counters."""
 
     name = "scripted"
@@ -79,9 +80,9 @@ class ScriptedPolicy:
         self.planning_seconds = 0.0
         self.goal: Vector = np.asarray(self.env.world.goal, dtype=np.float64)
 
+    @abstractmethod
     def act(self, observation: Observation, info: dict[str, Any]) -> Action:
         """The next action, (d,) float32."""
-        raise NotImplementedError(f"{type(self).__name__} does not say how it acts")
 
     @property
     def position(self) -> Vector:
