@@ -9,7 +9,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::World;
-use crate::currents::{RING_SPEED, VortexField};
+use crate::currents::{RING_SPEED, VortexField, scale_to_peak};
 use crate::error::WorldError;
 use crate::math::{Vec2, Vec3, distance};
 use crate::rng::{Purpose, Stream};
@@ -18,7 +18,6 @@ use crate::scenario::{
     SectionFrame, Sections, Sphere, Vehicle, Vortex, VortexDraw, Vortices,
 };
 use crate::seabed::PeakFloor;
-use crate::world::scale_to_peak;
 
 /// The families there are.
 pub const FAMILIES: [&str; 2] = ["lfhh-2d", "lfhh-3d"];

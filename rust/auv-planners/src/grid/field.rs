@@ -344,11 +344,6 @@ impl TimeField {
         (seconds.is_finite() && self.free(world, a, world.clearance(a), b, world.clearance(b))).then_some(seconds)
     }
 
-    /// The goal (m).
-    pub fn goal(&self) -> Vec3 {
-        self.goal
-    }
-
     /// Nodes settled: what the field cost.
     pub fn settled(&self) -> u64 {
         self.settled

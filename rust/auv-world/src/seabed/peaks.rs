@@ -8,7 +8,7 @@
 use wide::f64x4;
 
 use crate::lanes::{Column, exp as exp4, least};
-use crate::math::{Vec3, add_scaled, exp};
+use crate::math::{Vec3, exp};
 use crate::obstacles::Beams;
 use crate::scenario::{Peak, Peaks};
 
@@ -158,18 +158,12 @@ impl PeakFloor {
         }
         range
     }
-
-    /// A point on the surface, for tests and pictures: `t` metres along a beam.
-    #[doc(hidden)]
-    pub fn gap_along(&self, origin: Vec3, direction: Vec3, t: f64) -> f64 {
-        let point = add_scaled(origin, t, direction);
-        self.depth(point[0], point[1]) - point[2]
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::add_scaled;
     use proptest::prelude::*;
 
     fn floor() -> PeakFloor {
@@ -182,6 +176,11 @@ mod tests {
                 peak(2000.0, 2000.0, 12_000.0, 1.1, 1.1, 1500.0),
             ],
         })
+    }
+
+    fn gap_along(floor: &PeakFloor, origin: Vec3, direction: Vec3, t: f64) -> f64 {
+        let point = add_scaled(origin, t, direction);
+        floor.depth(point[0], point[1]) - point[2]
     }
 
     #[test]
@@ -235,7 +234,7 @@ mod tests {
             prop_assert_eq!(ranges.to_array(), floor.range(origin, &beams, longest, &[0, 1, 2]).to_array());
             let range = ranges.to_array()[0];
             for i in 0..50 {
-                prop_assert!(floor.gap_along(origin, direction, range * f64::from(i) / 50.0) > -1e-6);
+                prop_assert!(gap_along(&floor, origin, direction, range * f64::from(i) / 50.0) > -1e-6);
             }
             if range < 5000.0 {
                 let end = add_scaled(origin, range, direction);
