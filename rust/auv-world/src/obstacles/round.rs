@@ -27,8 +27,9 @@ struct Slab {
     y: f64x4,
     z: f64x4,
     radius: f64x4,
-    /// All of them lie between these y.
+    /// They and all that follow reach no lower than this y, ...
     low: f64,
+    /// ... they and all before no higher than this.
     high: f64,
 }
 
@@ -39,6 +40,9 @@ pub struct Discs {
     y: Column,
     radius: Column,
 }
+
+/// So many slabs on either side of a point are looked at in any case.
+const AROUND: usize = 2;
 
 /// Padding of a column of centres: far from everything.
 const FAR: f64 = 1e15;
@@ -113,6 +117,11 @@ impl Spheres {
                 high: reach(1.0),
             });
         }
+        for i in 1..self.slabs.len() {
+            let j = self.slabs.len() - 1 - i;
+            self.slabs[i].high = self.slabs[i].high.max(self.slabs[i - 1].high);
+            self.slabs[j].low = self.slabs[j].low.min(self.slabs[j + 1].low);
+        }
     }
 
     /// Number of balls.
@@ -134,19 +143,32 @@ impl Spheres {
     #[inline]
     pub fn clearance(&self, point: Vec3) -> f64 {
         let [x, y, z] = point.map(f64x4::splat);
-        let look = |nearest: f64, slab: &Slab| {
-            if slab.low - point[1] >= nearest || point[1] - slab.high >= nearest {
-                return nearest;
-            }
+        let distance2 = |slab: &Slab| {
             let (dx, dy, dz) = (x - slab.x, y - slab.y, z - slab.z);
-            nearer(dx * dx + dy * dy + dz * dz, slab.radius, nearest)
+            dx * dx + dy * dy + dz * dz
         };
-        // Where to begin decides only how soon the rest can be passed over: a guess, without branches.
+        // Where to begin decides only how soon the rest can be passed over: a guess. Its neighbours are
+        // looked at without branches, which random points would mispredict.
         let along = (point[1] - self.first) * self.slabs_per_metre;
         let middle = (along.max(0.0) as usize).min(self.slabs.len());
-        let (before, after) = self.slabs.split_at(middle);
-        let nearest = after.iter().fold(f64::INFINITY, look);
-        before.iter().rev().fold(nearest, look)
+        let (first, last) = (middle.saturating_sub(AROUND), (middle + AROUND).min(self.slabs.len()));
+        let around = self.slabs[first..last]
+            .iter()
+            .fold(f64x4::splat(f64::INFINITY), |nearest, slab| nearest.fast_min(distance2(slab).sqrt() - slab.radius));
+        let mut nearest = least(around, f64::INFINITY);
+        for slab in &self.slabs[last..] {
+            if slab.low - point[1] >= nearest {
+                break;
+            }
+            nearest = nearer(distance2(slab), slab.radius, nearest);
+        }
+        for slab in self.slabs[..first].iter().rev() {
+            if point[1] - slab.high >= nearest {
+                break;
+            }
+            nearest = nearer(distance2(slab), slab.radius, nearest);
+        }
+        nearest
     }
 
     /// Appends the balls nearer than `longest`.
@@ -206,10 +228,11 @@ impl Discs {
     pub fn clearance(&self, point: Vec3) -> f64 {
         let (x, y) = (f64x4::splat(point[0]), f64x4::splat(point[1]));
         let columns = self.x.chunks().zip(self.y.chunks()).zip(self.radius.chunks());
-        columns.fold(f64::INFINITY, |nearest, ((cx, cy), radius)| {
+        let nearest = columns.fold(f64x4::splat(f64::INFINITY), |nearest, ((cx, cy), radius)| {
             let (dx, dy) = (x - cx, y - cy);
-            nearer(dx * dx + dy * dy, radius, nearest)
-        })
+            nearest.fast_min((dx * dx + dy * dy).sqrt() - radius)
+        });
+        least(nearest, f64::INFINITY)
     }
 
     /// Appends the discs nearer than `longest`.

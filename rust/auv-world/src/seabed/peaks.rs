@@ -53,9 +53,12 @@ pub struct PeakFloor {
 impl PeakFloor {
     /// Prepares checked peaks.
     pub fn new(peaks: &Peaks) -> Self {
+        // Neighbours share a chunk, so that a point is near few chunks.
+        let mut order: Vec<&Peak> = peaks.peaks.iter().collect();
+        order.sort_by(|a, b| a.y_m.total_cmp(&b.y_m));
         let column = |value: fn(&Peak) -> f64| {
             let mut column = Column::default();
-            peaks.peaks.iter().for_each(|peak| column.push(value(peak), 0.0));
+            order.iter().for_each(|peak| column.push(value(peak), 0.0));
             column
         };
         Self {
