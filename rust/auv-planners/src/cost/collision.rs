@@ -46,12 +46,8 @@ impl Test {
         if collision != Collision::Segment {
             let frame = Frame::new(world);
             let map = CellMap::new(world, &frame);
-            return Self::Cells {
-                frame,
-                map,
-                ends_only: collision == Collision::Waypoints,
-                places: Default::default(),
-            };
+            let places = Places::new(&frame);
+            return Self::Cells { frame, map, ends_only: collision == Collision::Waypoints, places };
         }
         let flat = world.scenario().dimensions == 2 && !world.has_other_solids() && world.spheres().is_empty();
         if flat && matches!(world.floor(), auv_world::seabed::Floor::None) {
@@ -125,30 +121,70 @@ fn walk(world: &World, track: &Track, i: usize, required: f64, shortest: f64) ->
     }
 }
 
+/// Where the waypoints of the last path lay along the way. Planners on sections move waypoints across it
+/// only, so that what follows from this alone holds for the next path.
+#[derive(Debug, Clone)]
+struct Along {
+    /// Whether the way runs along y, so that y alone decides.
+    along_y: bool,
+    y: Vec<f64>,
+}
+
+impl Along {
+    fn new(frame: &Frame) -> Self {
+        Self { along_y: frame.along() == [0.0, 1.0], y: Vec::new() }
+    }
+
+    /// Whether any waypoint lies elsewhere along the way than at the last call.
+    #[inline]
+    fn moved(&mut self, track: &Track) -> bool {
+        let y = &track.y[..track.points()];
+        // Bit by bit, without an early end: several lanes at once.
+        let differ = || self.y.iter().zip(y).fold(false, |differ, (a, b)| differ | (a.to_bits() != b.to_bits()));
+        let moved = !self.along_y || self.y.len() != y.len() || differ();
+        if moved {
+            self.y.clear();
+            self.y.extend_from_slice(y);
+        }
+        moved
+    }
+}
+
 /// The waypoints in the cell map.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Places {
+    along: Along,
     /// Scaled as the map scales them: sections, columns, rows.
     scaled: [Vec<f64>; 3],
-    cells: Vec<[u32; 3]>,
+    /// The same as whole numbers.
+    cells: [Vec<u32>; 3],
 }
 
 impl Places {
+    fn new(frame: &Frame) -> Self {
+        Self { along: Along::new(frame), scaled: Default::default(), cells: Default::default() }
+    }
+
     #[inline]
     fn locate(&mut self, track: &Track, frame: &Frame, map: &CellMap) {
         let n = track.points();
-        let [sections, across, down] = &mut self.scaled;
-        for list in [&mut *sections, &mut *across, &mut *down] {
-            list.resize(n, 0.0);
+        let (x, y, z) = (&track.x[..n], &track.y[..n], &track.z[..n]);
+        if self.along.moved(track) {
+            self.scaled.iter_mut().for_each(|scaled| scaled.resize(n, 0.0));
+            self.cells.iter_mut().for_each(|cells| cells.resize(n, 0));
+            for (section, (x, y)) in self.scaled[0].iter_mut().zip(x.iter().zip(y)) {
+                *section = map.scale_section(frame.section(*x, *y));
+            }
+            map.cells(0, &self.scaled[0], &mut self.cells[0]);
         }
-        self.cells.resize(n, [0; 3]);
-        let points = track.x[..n].iter().zip(&track.y[..n]).zip(&track.z[..n]);
-        let places = sections.iter_mut().zip(across).zip(down);
-        for (((x, y), z), ((section, across), down)) in points.zip(places) {
-            [*section, *across, *down] = map.scale(frame.section(*x, *y), frame.lateral(*x, *y), *z);
+        for (across, (x, y)) in self.scaled[1].iter_mut().zip(x.iter().zip(y)) {
+            *across = map.scale_lateral(frame.lateral(*x, *y));
         }
-        for i in 0..n {
-            self.cells[i] = map.cell(self.at(i));
+        for (down, z) in self.scaled[2].iter_mut().zip(z) {
+            *down = map.scale_depth(*z);
+        }
+        for axis in [1, 2] {
+            map.cells(axis, &self.scaled[axis], &mut self.cells[axis]);
         }
     }
 
@@ -158,15 +194,21 @@ impl Places {
         [section[i], across[i], down[i]]
     }
 
+    #[inline(always)]
+    fn cell(&self, i: usize) -> [u32; 3] {
+        let [section, across, down] = &self.cells;
+        [section[i], across[i], down[i]]
+    }
+
     #[inline]
     fn end_blocked(&self, map: &CellMap, i: usize) -> bool {
-        map.is_blocked_cell(self.cells[i + 1])
+        map.is_blocked_cell(self.cell(i + 1))
     }
 
     #[inline]
     fn samples_blocked(&self, map: &CellMap, i: usize) -> bool {
         // From one section to the next all samples lie in one rectangle of cells, which may be free.
-        if map.is_free_between(self.cells[i], self.cells[i + 1]) {
+        if map.is_free_between(self.cell(i), self.cell(i + 1)) {
             return false;
         }
         let (from, to) = (self.at(i), self.at(i + 1));
@@ -189,6 +231,7 @@ pub struct Strips {
     first: Vec<u32>,
     /// First and last strip of each waypoint of the path under test.
     span: Vec<[u32; 2]>,
+    along: Along,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -215,7 +258,7 @@ impl Strips {
             }));
             first.push(discs.len() as u32);
         }
-        Self { frame, margin, discs, first, span: Vec::new() }
+        Self { along: Along::new(&frame), frame, margin, discs, first, span: Vec::new() }
     }
 
     fn strips(&self) -> usize {
@@ -234,10 +277,12 @@ impl Strips {
     fn blocked(&mut self, track: &Track) -> usize {
         let n = track.points();
         let strips = self.strips();
-        self.span.resize(n, [0; 2]);
-        for (span, (x, y)) in self.span.iter_mut().zip(track.x.iter().zip(&track.y)) {
-            let section = self.frame.section(*x, *y);
-            *span = [strip_of(section + OVERLAP, strips) as u32, strip_of(section - OVERLAP, strips) as u32];
+        if self.along.moved(track) {
+            self.span.resize(n, [0; 2]);
+            for (span, (x, y)) in self.span.iter_mut().zip(track.x.iter().zip(&track.y)) {
+                let section = self.frame.section(*x, *y);
+                *span = [strip_of(section + OVERLAP, strips) as u32, strip_of(section - OVERLAP, strips) as u32];
+            }
         }
         let segments = track.segments();
         let ends = if self.margin > 0.0 {

@@ -2,7 +2,7 @@
 
 use auv_world::World;
 
-use super::angle;
+use super::angle::{self, single};
 use super::track::{LANES, Lanes, Track};
 
 /// From here on, in r^2 / zeta^2, 1 - exp(-r^2 / zeta^2) counts as 1: it is, to 1e-9.
@@ -24,8 +24,13 @@ pub struct Flow {
 
 #[derive(Debug, Clone)]
 enum Field {
-    /// Lamb-Oseen vortices and nothing else: x, y, eta / (2 pi), 1 / zeta^2, and the square of the radius where the core ends.
-    Vortices(Vec<[f64; 5]>),
+    /// Lamb-Oseen vortices and nothing else.
+    Vortices {
+        /// For angles.
+        single: Box<angle::Vortices>,
+        /// For times: x, y, eta / (2 pi), 1 / zeta^2, and the square of the radius where the core ends.
+        double: Vec<[f64; 5]>,
+    },
     /// Anything.
     Any(Box<World>),
 }
@@ -43,14 +48,18 @@ impl Flow {
             let ([x, y], zeta) = (field.centre(i), field.core_radius(i));
             [x, y, field.circulation(i) / std::f64::consts::TAU, 1.0 / (zeta * zeta), CORE_END * zeta * zeta]
         };
-        Self { field: Field::Vortices((0..field.len()).map(vortex).collect()), resolution: longest / 40.0 }
+        let double = (0..field.len()).map(vortex).collect();
+        Self {
+            field: Field::Vortices { single: Box::new(angle::Vortices::new(world)), double },
+            resolution: longest / 40.0,
+        }
     }
 
     /// Velocity (m/s) at one point for each lane.
     #[inline(always)]
     fn velocity(&self, x: &Lanes, y: &Lanes, z: &Lanes) -> [Lanes; 2] {
         match &self.field {
-            Field::Vortices(vortices) => sum_vortices(vortices, x, y),
+            Field::Vortices { double, .. } => sum_vortices(double, x, y),
             Field::Any(world) => {
                 let (mut u, mut v) = ([0.0; LANES], [0.0; LANES]);
                 for lane in 0..LANES {
@@ -66,13 +75,15 @@ impl Flow {
     #[inline]
     pub fn angles(&self, track: &mut Track) {
         for first in (0..track.padded()).step_by(LANES) {
-            let (dx, dy) = (lanes(&track.dx, first), lanes(&track.dy, first));
+            let (dx, dy) = (single(lanes(&track.dx, first)), single(lanes(&track.dy, first)));
             let [x, y, z] = at(track, first, 0.5);
-            let [u, v] = self.velocity(&x, &y, &z);
-            let result = &mut track.result[first..first + LANES];
-            for lane in 0..LANES {
-                let (dot, cross) = (u[lane] * dx[lane] + v[lane] * dy[lane], u[lane] * dy[lane] - v[lane] * dx[lane]);
-                result[lane] = angle::between(dot, cross) * std::f64::consts::FRAC_1_PI;
+            let [u, v] = match &self.field {
+                Field::Vortices { single, .. } => single.velocity(&x, &y),
+                Field::Any(_) => self.velocity(&x, &y, &z).map(angle::single),
+            };
+            let angles = angle::between(u * dx + v * dy, u * dy - v * dx).to_array();
+            for (result, angle) in track.result[first..].iter_mut().zip(angles) {
+                *result = f64::from(angle);
             }
         }
     }
@@ -200,13 +211,13 @@ mod tests {
     fn velocity_is_that_of_the_world() {
         let world = testing::paper_world("lfhh-3d-1", 0);
         let flow = Flow::new(&world);
-        assert!(matches!(flow.field, Field::Vortices(_)));
+        assert!(matches!(flow.field, Field::Vortices { .. }));
         let any = Flow { field: Field::Any(Box::new(world.clone())), resolution: flow.resolution };
         let [x0, y0] = world.vortices().centre(0);
         for i in 0..1000 {
             let far = f64::from(i) * 10.0;
-            let x = [x0, x0 + 1e-3 * far, x0 - far, x0 + 3.0 * far];
-            let y = [y0, y0 + 1e-4 * far, y0 + 2.0 * far, y0 - far];
+            let x = [1e-3, 0.1, 0.5, -0.5, -1.0, 2.0, 3.0, 0.0].map(|part| x0 + part * far);
+            let y = [1e-4, 0.3, -0.2, 1.0, 2.0, -0.5, -1.0, 1.5].map(|part| y0 + part * far);
             let (fast, slow) = (flow.velocity(&x, &y, &[0.0; LANES]), any.velocity(&x, &y, &[0.0; LANES]));
             for axis in 0..2 {
                 for lane in 0..LANES {

@@ -67,7 +67,7 @@ fn agree(world: &World, path: &[Vec3]) {
         ("current", ours.current, reference[3]),
         ("total", ours.total, reference.iter().sum()),
     ] {
-        assert!((ours - reference).abs() < 1e-8, "{name}: {ours} but {reference}: {path:?}");
+        assert!((ours - reference).abs() < 1e-6, "{name}: {ours} but {reference}: {path:?}");
     }
     assert_eq!(ours.feasible, reference[1] + reference[2] == 0.0);
 }
@@ -169,8 +169,8 @@ fn angles_to_the_current() {
     // Angles 0, 45 and 90 degrees: fixed range 1/4, the path's own range 1/2.
     let path = flat(&[[1e3, 0.0], [1e3, 1e3], [2e3, 2e3], [3e3, 2e3]]);
     let options = CostOptions { alpha: AlphaRange::PerPath, ..CostOptions::default() };
-    assert!((terms(&world, &path).current - 0.25).abs() < 1e-12);
-    assert!((path_cost(&world, &path, Cost::Lfhh, &options).unwrap().current - 0.5).abs() < 1e-12);
+    assert!((terms(&world, &path).current - 0.25).abs() < 1e-7);
+    assert!((path_cost(&world, &path, Cost::Lfhh, &options).unwrap().current - 0.5).abs() < 1e-7);
 }
 
 #[test]

@@ -4,7 +4,7 @@
 //! results are set to 0 before anything is summed.
 
 /// Numbers that are worked on at once. The order of every sum follows from it: never change it lightly.
-pub const LANES: usize = 4;
+pub const LANES: usize = 8;
 
 /// One number for each lane.
 pub type Lanes = [f64; LANES];
@@ -136,5 +136,5 @@ fn sum(values: &[f64]) -> f64 {
             *lane += value;
         }
     }
-    (lanes[0] + lanes[1]) + (lanes[2] + lanes[3])
+    ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) + ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]))
 }

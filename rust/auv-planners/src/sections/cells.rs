@@ -156,26 +156,40 @@ impl CellMap {
     /// The column of a lateral place (m), the nearest one if it lies outside.
     #[inline]
     pub fn across_of(&self, lateral: f64) -> usize {
-        nearest((lateral - self.low[0]) * self.density[0], self.across)
+        nearest(self.scale_lateral(lateral), self.across)
     }
 
     /// The row of a depth (m), the nearest one if it lies outside.
     #[inline]
     pub fn down_of(&self, depth: f64) -> usize {
-        nearest((depth - self.low[1]) * self.density[1], self.down)
+        nearest(self.scale_depth(depth), self.down)
     }
 
-    /// A place given in sections, metres across and metres of depth: shifted and scaled so that whole
-    /// parts number sections, columns and rows.
-    #[inline]
-    pub fn scale(&self, section: f64, lateral: f64, depth: f64) -> [f64; 3] {
-        [section + 0.5, (lateral - self.low[0]) * self.density[0], (depth - self.low[1]) * self.density[1]]
-    }
-
-    /// Section, column and row of a scaled place, the nearest ones if it lies outside.
+    /// A place along the way, in sections, shifted so that its whole part numbers sections.
     #[inline(always)]
-    pub fn cell(&self, [section, across, down]: [f64; 3]) -> [u32; 3] {
-        [nearest(section, self.sections), nearest(across, self.across), nearest(down, self.down)].map(|i| i as u32)
+    pub fn scale_section(&self, section: f64) -> f64 {
+        section + 0.5
+    }
+
+    /// A lateral place (m), shifted and scaled so that its whole part numbers columns.
+    #[inline(always)]
+    pub fn scale_lateral(&self, lateral: f64) -> f64 {
+        (lateral - self.low[0]) * self.density[0]
+    }
+
+    /// A depth (m), shifted and scaled so that its whole part numbers rows.
+    #[inline(always)]
+    pub fn scale_depth(&self, depth: f64) -> f64 {
+        (depth - self.low[1]) * self.density[1]
+    }
+
+    /// Sections (axis 0), columns (1) or rows (2) of scaled places, the nearest ones if they lie outside.
+    #[inline]
+    pub fn cells(&self, axis: usize, scaled: &[f64], cells: &mut [u32]) {
+        let count = [self.sections, self.across, self.down][axis];
+        for (cell, place) in cells.iter_mut().zip(scaled) {
+            *cell = nearest(*place, count) as u32;
+        }
     }
 
     /// Whether a cell is blocked.
