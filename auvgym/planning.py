@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from auvgym import _core
+from auvgym import _core, ompl
 from auvgym._arrays import numbers
 from auvgym._names import unknown
 from auvgym.scenario import check_seed, parameters_json
@@ -61,7 +61,7 @@ class Phase:
 
 
 def list_planners() -> list[str]:
-    """Names of the planners."""
+    """Names of the planners, those of OMPL (``auvgym.ompl``) apart."""
     return list(_core.list_planners())
 
 
@@ -78,7 +78,7 @@ def plan(
 
     Args:
         world: the world, at its present time.
-        planner: one of :func:`list_planners`.
+        planner: one of :func:`list_planners`, or of ``auvgym.ompl.PLANNERS``.
         start: (3,) m; the mission's start if None.
         goal: (3,) m; the mission's goal if None.
         seed: of the planner's random stream; the same seed gives the same plan.
@@ -92,6 +92,12 @@ def plan(
             or outside the box, naming it, its value and what was allowed.
         KeyboardInterrupt: on Ctrl-C, within a fraction of a second.
     """
+    if planner in ompl.PLANNERS:
+        ends = [
+            world_end if end is None else np.array(_point(name, end))
+            for name, end, world_end in (("start", start, world.start), ("goal", goal, world.goal))
+        ]
+        return ompl.plan(world, planner, ends[0], ends[1], check_seed(seed), **parameters)
     _check_planner(planner)
     return _plan(
         _core.plan(
@@ -124,7 +130,7 @@ def replan(
         world: the world as it is now.
         path: the global path so far, (n, 3) m.
         position: where the vehicle is, (3,) m.
-        planner: a planner on sections.
+        planner: as for :func:`plan`; planners without sections re-plan to the goal.
         seed: of the planner's random stream.
         window: sections of the first window.
         **parameters: the planner's own.
@@ -135,6 +141,10 @@ def replan(
     Raises:
         PlanningError, KeyboardInterrupt: as :func:`plan`.
     """
+    if planner in ompl.PLANNERS:
+        # Planners that know no sections know no window.
+        route = _path("path", path)
+        return plan(world, planner, start=position, goal=route[-1], seed=seed, **parameters)
     _check_planner(planner)
     if isinstance(window, bool) or not isinstance(window, Integral) or window < 1:
         raise _core.PlanningError(f"window = {window!r}: must be an integer, 1 section or more")
@@ -201,7 +211,8 @@ def _plan(found: _core.FoundPlan) -> Plan:
 
 def _check_planner(planner: str) -> None:
     if planner not in list_planners():
-        raise _core.PlanningError(unknown("planner", planner, list_planners()))
+        known = [*list_planners(), *ompl.PLANNERS]
+        raise _core.PlanningError(unknown("planner", planner, known))
 
 
 def _parameters(parameters: dict[str, Any]) -> str:

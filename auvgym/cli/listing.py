@@ -65,6 +65,8 @@ def _planners() -> Iterator[tuple[str, str]]:
 
     for name in auvgym.list_planners():
         yield name, ""
+    for name in auvgym.ompl.PLANNERS:
+        yield name, 'needs pip install "auvgym[ompl]"'
 
 
 def _policies() -> Iterator[tuple[str, str]]:

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 import auvgym
+from auvgym import ompl
 from auvgym._names import unknown
 from auvgym.policies.astar_replan import AstarReplanPolicy
 from auvgym.policies.base import Policy, PolicyError, ScriptedPolicy
@@ -51,13 +52,13 @@ def make(name: str, seed: int = 0, **parameters: Any) -> Policy:
     Raises:
         PolicyError: no policy of that name, or a parameter that it does not have.
     """
-    if ":" in name:
-        return _make_foreign(name, seed, parameters)
     if name in SCRIPTED:
         _check_parameters(name, SCRIPTED[name], parameters)
         return SCRIPTED[name](seed=seed, **parameters)
-    if name in auvgym.list_planners():
+    if name in auvgym.list_planners() or name in ompl.PLANNERS:
         return PlannerPolicy(planner=name, seed=seed, **parameters)
+    if ":" in name:
+        return _make_foreign(name, seed, parameters)
     raise PolicyError(unknown("policy", name, list_policies()))
 
 
