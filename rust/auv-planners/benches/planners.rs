@@ -63,6 +63,23 @@ fn evaluate_converged(bencher: divan::Bencher, name: &str) {
     evaluate(bencher, name, Cost::Lfhh, 1e3);
 }
 
+/// The same, cost `afhh`.
+#[divan::bench(args = ["lfhh-3d-1"])]
+fn evaluate_afhh(bencher: divan::Bencher, name: &str) {
+    evaluate(bencher, name, Cost::Afhh, 1e3);
+}
+
+/// A whole search of AFHH: 5 000 000 evaluations of its cost.
+#[divan::bench(args = ["lfhh-3d-1"], sample_count = 2)]
+fn afhh_run(bencher: divan::Bencher, name: &str) {
+    let world = world(name);
+    let mission = world.mission();
+    let parameters = r#"{"cost": "afhh", "max_evaluations": 5000000}"#;
+    bencher
+        .counter(ItemsCount::new(5_000_000_u64))
+        .bench_local(|| plan("afhh", &world, mission.start_m, mission.goal_m, 0, parameters, &Control::none()));
+}
+
 /// The same, cost `time`.
 #[divan::bench(args = ["lfhh-2d-1", "lfhh-3d-1"])]
 fn evaluate_time(bencher: divan::Bencher, name: &str) {

@@ -5,11 +5,15 @@
 
 pub mod control;
 pub mod cost;
+pub mod differential_evolution;
 pub mod error;
+pub mod gaussian;
 pub mod grid;
 pub mod histogram;
 pub mod parameters;
+pub mod particle_swarm;
 pub mod plan;
+pub mod population;
 pub mod protocol;
 pub mod registry;
 pub mod replanning;

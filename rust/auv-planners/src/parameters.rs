@@ -8,6 +8,16 @@ use serde_json::{Map, Value};
 use crate::cost::{Cost, CostOptions};
 use crate::error::{PlanError, within};
 
+/// When a population planner ends its search.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StopRule {
+    /// After the generation that found a feasible path.
+    FirstFeasible,
+    /// When the generations or evaluations are spent.
+    Exhaust,
+}
+
 /// What every planner understands.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -17,6 +27,10 @@ pub struct Common {
     /// At most this many generations; without it the planner's default, or no limit if
     /// `max_evaluations` is given.
     pub generations: Option<u64>,
+    /// When a population planner stops; without it the planner's default.
+    pub stop: Option<StopRule>,
+    /// Population planners stop after the generation that found a path of this total cost or less.
+    pub target_cost: Option<f64>,
     /// What is minimised.
     pub cost: Cost,
     /// Readings and limits of the cost.
@@ -25,11 +39,13 @@ pub struct Common {
 
 impl Common {
     /// Names of the common parameters.
-    pub const NAMES: [&'static str; 4] = ["max_evaluations", "generations", "cost", "cost_options"];
+    pub const NAMES: [&'static str; 6] =
+        ["max_evaluations", "generations", "stop", "target_cost", "cost", "cost_options"];
 
     fn check(&self) -> Result<(), PlanError> {
         within("max_evaluations", self.max_evaluations.unwrap_or(1), 1, 1 << 53)?;
         within("generations", self.generations.unwrap_or(0), 0, 1 << 32)?;
+        within("target_cost", self.target_cost.unwrap_or(0.0), -1e9, 1e9)?;
         self.cost_options.check()
     }
 

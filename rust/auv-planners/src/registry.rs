@@ -6,11 +6,10 @@ use auv_world::rng::{Purpose, Stream};
 
 use crate::control::Control;
 use crate::error::PlanError;
-use crate::grid;
-use crate::histogram;
 use crate::parameters::{Common, Parameters, parse, parse_common};
 use crate::plan::Plan;
 use crate::sections::SectionProblem;
+use crate::{differential_evolution, gaussian, grid, histogram, particle_swarm};
 
 /// A question to a planner.
 #[derive(Clone, Copy)]
@@ -83,6 +82,11 @@ const PLANNERS: &[Entry] = &[
     Entry { name: "lfhh", run: histogram::plan_lfhh },
     Entry { name: "fhh", run: histogram::plan_fhh },
     Entry { name: "fhh-lts", run: histogram::plan_fhh_lts },
+    Entry { name: "afhh", run: histogram::plan_afhh },
+    Entry { name: "eda-g", run: gaussian::plan_eda_g },
+    Entry { name: "ade", run: differential_evolution::plan_ade },
+    Entry { name: "rwde", run: differential_evolution::plan_rwde },
+    Entry { name: "pso", run: particle_swarm::plan_pso },
 ];
 
 /// The names of all planners.

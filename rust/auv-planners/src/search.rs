@@ -2,7 +2,7 @@
 //! the best candidate, and listens for interruption.
 
 use crate::control::Control;
-use crate::parameters::Common;
+use crate::parameters::{Common, StopRule};
 use crate::plan::Plan;
 use crate::sections::SectionProblem;
 
@@ -17,6 +17,8 @@ pub struct Search<'a> {
     problem: &'a mut SectionProblem,
     control: Control<'a>,
     limit: u64,
+    stop: StopRule,
+    target: f64,
     evaluations: u64,
     best: Vec<f64>,
     best_total: f64,
@@ -26,8 +28,8 @@ pub struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// Starts a search with nothing evaluated.
-    pub fn new(problem: &'a mut SectionProblem, common: &Common, control: Control<'a>) -> Self {
+    /// Starts a search with nothing evaluated, for a planner that stops by `stop` unless it is told otherwise.
+    pub fn new(problem: &'a mut SectionProblem, common: &Common, stop: StopRule, control: Control<'a>) -> Self {
         let limit = common.max_evaluations.unwrap_or(u64::MAX);
         let best = vec![0.0; problem.genes()];
         let history = Vec::with_capacity(common.generations_or(USUAL_GENERATIONS).min(USUAL_GENERATIONS) as usize + 1);
@@ -35,6 +37,8 @@ impl<'a> Search<'a> {
             problem,
             control,
             limit,
+            stop: common.stop.unwrap_or(stop),
+            target: common.target_cost.unwrap_or(f64::NEG_INFINITY),
             evaluations: 0,
             best,
             best_total: f64::INFINITY,
@@ -70,9 +74,13 @@ impl<'a> Search<'a> {
         Some(terms.total)
     }
 
-    /// Whether the best candidate so far is feasible.
-    pub fn is_feasible(&self) -> bool {
-        self.feasible
+    /// Whether what was found suffices.
+    pub fn is_done(&self) -> bool {
+        let feasible = match self.stop {
+            StopRule::FirstFeasible => self.feasible,
+            StopRule::Exhaust => false,
+        };
+        feasible || self.best_total <= self.target
     }
 
     /// Notes the best total at the end of a generation.

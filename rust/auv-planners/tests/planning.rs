@@ -14,7 +14,7 @@ use auv_world::{Scenario, World};
 use proptest::prelude::*;
 
 /// The planners that put waypoints on sections and search with a population.
-const SECTION_PLANNERS: [&str; 3] = ["lfhh", "fhh", "fhh-lts"];
+const SECTION_PLANNERS: [&str; 8] = ["lfhh", "fhh", "fhh-lts", "afhh", "eda-g", "ade", "rwde", "pso"];
 
 fn scenario(name: &str) -> Scenario {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../auvgym/scenarios");
@@ -55,7 +55,7 @@ proptest! {
     fn plans_keep_their_promises(
         seed in 0..1000u64,
         family in prop::sample::select(vec!["lfhh-2d", "lfhh-3d"]),
-        cost in prop::sample::select(vec!["lfhh", "time", "energy"]),
+        cost in prop::sample::select(vec!["lfhh", "afhh", "time", "energy"]),
         margin_m in prop::sample::select(vec![0.0, 150.0]),
         budget in 1..1500u64,
         planner in prop::sample::select(SECTION_PLANNERS.to_vec()),

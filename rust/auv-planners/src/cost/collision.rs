@@ -3,7 +3,7 @@
 use auv_world::World;
 use auv_world::math::{Vec2, Vec3};
 
-use super::options::{Collision, CostOptions};
+use super::options::{Collision, Cost, CostOptions};
 use super::track::Track;
 use crate::sections::{CellMap, Frame, nearest};
 
@@ -41,8 +41,8 @@ pub enum Test {
 
 impl Test {
     /// Prepares the test that the options ask for.
-    pub fn new(world: &World, options: &CostOptions) -> Self {
-        let collision = options.collision_in(world.scenario());
+    pub fn new(world: &World, cost: Cost, options: &CostOptions) -> Self {
+        let collision = options.collision_in(cost, world.scenario());
         if collision != Collision::Segment {
             let frame = Frame::new(world);
             let map = CellMap::new(world, &frame);

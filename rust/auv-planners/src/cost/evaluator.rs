@@ -23,6 +23,10 @@ pub struct Evaluator {
     /// A change of direction is too sharp if its cosine is less.
     turn_limit: f64,
     alpha: AlphaRange,
+    /// A step of cost `afhh` is too long if it is longer (m).
+    longest_step: f64,
+    /// Depth of the box (m).
+    depth: f64,
     track: Track,
 }
 
@@ -40,10 +44,12 @@ impl Evaluator {
         Ok(Self {
             cost,
             flow: Flow::new(world),
-            test: Test::new(world, options),
+            test: Test::new(world, cost, options),
             vehicle: world.scenario().vehicle.clone(),
             turn_limit: libm::cos(limit),
             alpha: options.alpha,
+            longest_step: options.step_limit * Frame::new(world).spacing_m(),
+            depth: world.scenario().domain.max_m[2] - world.scenario().domain.min_m[2],
             track: Track::default(),
         })
     }
@@ -67,21 +73,37 @@ impl Evaluator {
         let penalty = |offending: usize| if offending > 0 { offending as f64 / segments + PENALTY } else { 0.0 };
         let (direct, path_length_m) = (track.direct_length(), track.path_length());
         let length = if path_length_m > 0.0 { 1.0 - direct / path_length_m } else { 0.0 };
-        let curvature = penalty(track.sharp_turns(self.turn_limit));
-        let block = penalty(self.test.blocked(track));
         let mut terms = CostTerms {
             total: 0.0,
-            feasible: curvature + block == 0.0,
+            feasible: true,
             length,
-            curvature,
-            block,
+            curvature: 0.0,
+            block: 0.0,
             current: 0.0,
             path_length_m,
+            depth: None,
+            smooth: None,
             excess: None,
             time_s: None,
             energy_j: None,
         };
+        let blocked = self.test.blocked(track);
+        if self.cost == Cost::Afhh {
+            // Its eq. 5 counts waypoints, of which there is one more.
+            terms.block = if blocked > 0 { blocked as f64 / (segments + 1.0) + PENALTY } else { 0.0 };
+        } else {
+            terms.block = penalty(blocked);
+            terms.curvature = penalty(track.sharp_turns(self.turn_limit));
+        }
+        terms.feasible = terms.curvature + terms.block == 0.0;
         let first = match self.cost {
+            Cost::Afhh => {
+                let depth = if self.depth > 0.0 { track.depth_range() / self.depth } else { 0.0 };
+                let smooth = penalty(track.longer_than(self.longest_step));
+                terms.feasible &= smooth == 0.0;
+                (terms.depth, terms.smooth) = (Some(depth), Some(smooth));
+                length + depth + smooth
+            }
             Cost::Lfhh => {
                 self.flow.angles(track);
                 terms.current = mean_angle(track, self.alpha);
@@ -100,7 +122,7 @@ impl Evaluator {
                 excess
             }
         };
-        terms.total = first + curvature + block + terms.current;
+        terms.total = first + terms.curvature + terms.block + terms.current;
         terms
     }
 

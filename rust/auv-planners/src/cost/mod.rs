@@ -1,4 +1,4 @@
-//! What a path costs: LFHH's F (eq. 6-10), travel time or energy, for any polyline.
+//! What a path costs: LFHH's F (eq. 6-10), AFHH's (its eq. 1-5), travel time or energy, for any polyline.
 
 mod angle;
 mod collision;
@@ -21,9 +21,9 @@ pub const PENALTY: f64 = 2.0;
 
 /// The cost of a path, term by term.
 ///
-/// `total = first + curvature + block + current`, where `first` is `length` (cost `lfhh`) or the excess
-/// over still water (costs `time`, `energy`). Penalties are 0 or lie in 2 ..= 3, so a feasible path of cost
-/// `lfhh` has a total below 2.
+/// `total = first + curvature + block + current`, where `first` is `length` (cost `lfhh`), `length + depth +
+/// smooth` (cost `afhh`, which has no curvature or current) or the excess over still water (costs `time`, `energy`).
+/// Penalties are 0 or lie in 2 ..= 3, so a feasible path of cost `lfhh` or `afhh` has a total below 2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CostTerms {
     /// The sum that planners minimise.
@@ -34,13 +34,18 @@ pub struct CostTerms {
     pub length: f64,
     /// 0, or 2 + share of the turns that are too sharp (LFHH eq. 8).
     pub curvature: f64,
-    /// 0, or 2 + share of the segments that collide (LFHH eq. 9).
+    /// 0, or 2 + share of the segments that collide (LFHH eq. 9). Cost `afhh`: share of the waypoints that
+    /// are blocked (its eq. 5), start excepted.
     pub block: f64,
     /// Cost `lfhh`: mean angle between segments and current in units of pi (LFHH eq. 10). Costs `time` and
     /// `energy`: 0, or 2 + share of the segments along which the current beats the vehicle.
     pub current: f64,
     /// Length of the path (m).
     pub path_length_m: f64,
+    /// Cost `afhh`: range of depth / depth of the box, in 0 ..= 1 (its eq. 3).
+    pub depth: Option<f64>,
+    /// Cost `afhh`: 0, or 2 + share of the segments that are too long (its eq. 4).
+    pub smooth: Option<f64>,
     /// Costs `time` and `energy`: 1 - still-water time along the straight line / travel time; below 0
     /// if the current helps.
     pub excess: Option<f64>,
@@ -53,15 +58,18 @@ pub struct CostTerms {
 impl CostTerms {
     /// All numbers with their names, for tables and mappings.
     pub fn named(&self) -> Vec<(&'static str, f64)> {
-        let mut terms = vec![
-            ("total", self.total),
-            ("length", self.length),
-            ("curvature", self.curvature),
-            ("block", self.block),
-            ("current", self.current),
-            ("path_length_m", self.path_length_m),
+        let mut terms = vec![("total", self.total), ("length", self.length), ("block", self.block)];
+        if self.smooth.is_none() {
+            terms.extend([("curvature", self.curvature), ("current", self.current)]);
+        }
+        terms.push(("path_length_m", self.path_length_m));
+        let optional = [
+            ("depth", self.depth),
+            ("smooth", self.smooth),
+            ("excess", self.excess),
+            ("time_s", self.time_s),
+            ("energy_j", self.energy_j),
         ];
-        let optional = [("excess", self.excess), ("time_s", self.time_s), ("energy_j", self.energy_j)];
         terms.extend(optional.into_iter().filter_map(|(name, value)| Some((name, value?))));
         terms
     }

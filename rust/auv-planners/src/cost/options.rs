@@ -13,6 +13,9 @@ pub enum Cost {
     /// LFHH's F: length, curvature, collisions, angle to the current (eq. 6-10).
     #[default]
     Lfhh,
+    /// AFHH's cost: length, range of depth, length of the steps, blocked waypoints (Liu, Zhan et al. 2018,
+    /// eq. 1-5).
+    Afhh,
     /// Travel time with the current.
     Time,
     /// Energy with the current.
@@ -21,7 +24,7 @@ pub enum Cost {
 
 impl Cost {
     /// All names.
-    pub const NAMES: [&'static str; 3] = ["lfhh", "time", "energy"];
+    pub const NAMES: [&'static str; 4] = ["lfhh", "afhh", "time", "energy"];
 
     /// The cost of that name.
     ///
@@ -30,6 +33,7 @@ impl Cost {
     pub fn from_name(name: &str) -> Result<Self, PlanError> {
         match name {
             "lfhh" => Ok(Self::Lfhh),
+            "afhh" => Ok(Self::Afhh),
             "time" => Ok(Self::Time),
             "energy" => Ok(Self::Energy),
             _ => Err(PlanError::unknown("cost", name, &Self::NAMES)),
@@ -52,7 +56,7 @@ pub enum Angle {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Collision {
-    /// `segment` in 2-D or with a margin, else `cells`.
+    /// Cost `afhh`: `waypoints`. Others: `segment` in 2-D or with a margin, else `cells`.
     #[default]
     Auto,
     /// The whole segment against the true shapes.
@@ -89,6 +93,8 @@ pub struct CostOptions {
     pub margin_m: f64,
     /// The range of angles to the current.
     pub alpha: AlphaRange,
+    /// Cost `afhh`: the longest step, in distances between sections (theta of its eq. 4).
+    pub step_limit: f64,
 }
 
 impl Default for CostOptions {
@@ -99,6 +105,7 @@ impl Default for CostOptions {
             collision: Collision::Auto,
             margin_m: 0.0,
             alpha: AlphaRange::Fixed,
+            step_limit: 1.75,
         }
     }
 }
@@ -111,6 +118,7 @@ impl CostOptions {
     pub fn check(&self) -> Result<(), PlanError> {
         within("cost_options.turn_limit_rad", self.turn_limit_rad, 0.0, std::f64::consts::PI)?;
         within("cost_options.margin_m", self.margin_m, 0.0, 1e9)?;
+        within("cost_options.step_limit", self.step_limit, 0.0, 1e9)?;
         if self.margin_m > 0.0 && matches!(self.collision, Collision::Cells | Collision::Waypoints) {
             let rule = "cells know no margin: needs collision = \"segment\" or \"auto\"";
             return Err(PlanError::parameter("cost_options.margin_m", self.margin_m, rule));
@@ -118,9 +126,10 @@ impl CostOptions {
         Ok(())
     }
 
-    /// The collision test that `auto` means in a scenario.
-    pub(crate) fn collision_in(&self, scenario: &Scenario) -> Collision {
+    /// The collision test that `auto` means for a cost in a scenario.
+    pub(crate) fn collision_in(&self, cost: Cost, scenario: &Scenario) -> Collision {
         match self.collision {
+            Collision::Auto if cost == Cost::Afhh && self.margin_m == 0.0 => Collision::Waypoints,
             Collision::Auto if scenario.dimensions == 2 || self.margin_m > 0.0 => Collision::Segment,
             Collision::Auto => Collision::Cells,
             chosen => chosen,

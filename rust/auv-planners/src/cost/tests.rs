@@ -276,6 +276,35 @@ fn what_is_no_path_is_refused() {
     // Two equal points are a path of length 0.
     assert_eq!(cost(&[[1e3, 1e3, 0.0]; 2]).unwrap().length, 0.0);
     assert!(
-        Cost::from_name("tiem").unwrap_err().to_string().contains("did you mean \"time\"? known: lfhh, time, energy")
+        Cost::from_name("tiem")
+            .unwrap_err()
+            .to_string()
+            .contains("did you mean \"time\"? known: lfhh, afhh, time, energy")
     );
+}
+
+#[test]
+fn afhh_by_hand() {
+    // Sections 1 km apart in a box 20 km deep; the limit of a step is 1.75 km.
+    let world = testing::paper_world("lfhh-3d-1", 0);
+    let cost = |path: &[Vec3]| path_cost(&world, path, Cost::Afhh, &CostOptions::default()).unwrap();
+    let free = |path: &[Vec3]| path[1..].iter().filter(|p| meets_cell(&world, **p, **p)).count();
+    let path = [[1e3, 0.0, 1e3], [1e3, 1e3, 1.5e3], [1e3, 2e3, 1e3], [1e3, 3e3, 1e3]];
+    assert_eq!(free(&path), 0);
+    let found = cost(&path);
+    let length = 2.0 * (1e6 + 0.25e6f64).sqrt() + 1e3;
+    assert!((found.length - (1.0 - 3e3 / length)).abs() < 1e-12);
+    assert_eq!((found.depth, found.smooth, found.block), (Some(500.0 / 20e3), Some(0.0), 0.0));
+    assert!((found.total - found.length - 0.025).abs() < 1e-12 && found.feasible);
+    // One of three steps of 1 km along and 1.5 km aside is 1.80 km long.
+    let long = cost(&[[1e3, 0.0, 1e3], [2.5e3, 1e3, 1e3], [2.5e3, 2e3, 1e3], [2.5e3, 3e3, 1e3]]);
+    assert_eq!((long.smooth, long.feasible), (Some(2.0 + 1.0 / 3.0), false));
+    let wider = CostOptions { step_limit: 1.81, ..CostOptions::default() };
+    let path = [[1e3, 0.0, 1e3], [2.5e3, 1e3, 1e3], [2.5e3, 2e3, 1e3], [2.5e3, 3e3, 1e3]];
+    assert_eq!(path_cost(&world, &path, Cost::Afhh, &wider).unwrap().smooth, Some(0.0));
+    // One of four waypoints lies under the sea floor.
+    let deep = cost(&[[1e3, 0.0, 1e3], [1e3, 1e3, 20e3 - 1.0], [1e3, 2e3, 1e3], [1e3, 3e3, 1e3]]);
+    let floor = world.floor_depth(1.5e3, 1e3);
+    let blocked = usize::from(19.5e3 > floor);
+    assert_eq!(deep.block, if blocked > 0 { 2.25 } else { 0.0 });
 }

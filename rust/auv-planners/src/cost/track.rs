@@ -118,6 +118,28 @@ impl Track {
         sharp as usize
     }
 
+    /// Number of segments that are longer than `limit` (m).
+    #[inline]
+    pub fn longer_than(&self, limit: f64) -> usize {
+        let longer = self.length[..self.segments()].iter().map(|length| if *length > limit { 1.0 } else { 0.0 });
+        longer.sum::<f64>() as usize
+    }
+
+    /// Difference between the greatest and the least depth (m).
+    #[inline]
+    pub fn depth_range(&self) -> f64 {
+        // Padding repeats the last waypoint.
+        let (mut least, mut most) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+        for chunk in self.z.chunks_exact(LANES) {
+            for lane in 0..LANES {
+                least[lane] = if chunk[lane] < least[lane] { chunk[lane] } else { least[lane] };
+                most[lane] = if chunk[lane] > most[lane] { chunk[lane] } else { most[lane] };
+            }
+        }
+        let most = most.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        most - least.into_iter().fold(f64::INFINITY, f64::min)
+    }
+
     /// Sum of the results of the true segments.
     #[inline]
     pub fn sum_results(&mut self) -> f64 {

@@ -3,19 +3,20 @@
 
 use auv_world::rng::Stream;
 
+use super::sorted::SortedGenes;
+
 /// A histogram for each gene.
 #[derive(Debug, Clone)]
 pub struct Histograms {
     bins: usize,
     /// `bins + 1` bounds for each gene.
     bounds: Vec<f64>,
-    sorted: Vec<i64>,
 }
 
 impl Histograms {
-    /// Room for histograms of `genes` genes, made from `selected` values each.
-    pub fn new(genes: usize, bins: usize, selected: usize) -> Self {
-        Self { bins, bounds: vec![0.0; genes * (bins + 1)], sorted: Vec::with_capacity(selected) }
+    /// Room for histograms of `genes` genes.
+    pub fn new(genes: usize, bins: usize) -> Self {
+        Self { bins, bounds: vec![0.0; genes * (bins + 1)] }
     }
 
     /// Number of bins.
@@ -32,25 +33,18 @@ impl Histograms {
     /// Builds the histogram of a gene: every value first moves towards `best` by the part `learning`
     /// (LTS, eq. 14); then inner bounds lie midway between neighbours of the sorted values, so that
     /// each bin holds equally many, and the outer ones at `low` and `high`.
-    pub fn build(
-        &mut self,
-        gene: usize,
-        values: impl Iterator<Item = f64>,
-        best: f64,
-        learning: f64,
-        low: f64,
-        high: f64,
-    ) {
-        let sorted = &mut self.sorted;
-        sorted.clear();
-        sorted.extend(values.map(|item| ordered(item + learning * (best - item))));
-        sorted.sort_unstable();
-        let (bins, selected) = (self.bins, sorted.len());
+    pub fn build(&mut self, gene: usize, sorted: &SortedGenes, best: f64, learning: f64, low: f64, high: f64) {
+        let (bins, selected) = (self.bins, sorted.selected());
         let bounds = &mut self.bounds[gene * (bins + 1)..][..bins + 1];
+        // Learning keeps the order, so that only the values at the bounds need to learn.
+        let learned = |rank: usize| {
+            let item = sorted.value(gene, rank);
+            item + learning * (best - item)
+        };
         bounds[0] = low;
         for (k, bound) in bounds.iter_mut().enumerate().take(bins).skip(1) {
             let m = k * selected / bins;
-            *bound = (number(sorted[m - 1]) + number(sorted[m])) / 2.0;
+            *bound = (learned(m - 1) + learned(m)) / 2.0;
         }
         bounds[bins] = high;
     }
@@ -64,6 +58,22 @@ impl Histograms {
         (bin, place - bin as f64)
     }
 
+    /// Draws every gene of a candidate: two from each random number, whose halves say bin and place in it
+    /// to a part in four thousand million.
+    #[inline]
+    pub fn sample(&self, stream: &mut Stream, genes: &mut [f64]) {
+        let scale = self.bins as f64 / 4_294_967_296.0;
+        for (pair, bounds) in genes.chunks_mut(2).zip(self.bounds.chunks(2 * (self.bins + 1))) {
+            let random = stream.next_u64();
+            let halves = [random as u32, (random >> 32) as u32];
+            for ((gene, bounds), half) in pair.iter_mut().zip(bounds.chunks_exact(self.bins + 1)).zip(halves) {
+                let place = f64::from(half) * scale;
+                let bin = place as usize;
+                *gene = bounds[bin] + (place - bin as f64) * (bounds[bin + 1] - bounds[bin]);
+            }
+        }
+    }
+
     /// The value at a place in a bin.
     #[inline]
     pub fn value(&self, gene: usize, (bin, place): (usize, f64)) -> f64 {
@@ -72,64 +82,53 @@ impl Histograms {
     }
 }
 
-/// An integer that is ordered as the number is: integers sort twice as fast.
-#[inline(always)]
-fn ordered(number: f64) -> i64 {
-    flip(number.to_bits() as i64)
-}
-
-/// The number of such an integer.
-#[inline(always)]
-fn number(ordered: i64) -> f64 {
-    f64::from_bits(flip(ordered) as u64)
-}
-
-/// Turns the order of negative numbers round, whose bits say the magnitude.
-#[inline(always)]
-fn flip(bits: i64) -> i64 {
-    bits ^ (((bits >> 63) as u64) >> 1) as i64
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::population::Population;
     use auv_world::rng::Purpose;
+
+    /// One gene of a population that consists of these values.
+    fn sorted(values: &[f64]) -> SortedGenes {
+        let mut population = Population::new(values.len(), 1);
+        for (child, value) in values.iter().enumerate() {
+            population.child(child).fill(*value);
+            population.set_child_cost(child, child as f64);
+        }
+        population.select();
+        let mut sorted = SortedGenes::new(1, values.len(), values.len());
+        sorted.update(&population);
+        sorted
+    }
 
     #[test]
     fn bounds_by_hand() {
         // Sorted 1 2 4 8 | 10 20: three bins of two values each.
-        let mut model = Histograms::new(2, 3, 6);
-        model.build(1, [8.0, 20.0, 1.0, 4.0, 2.0, 10.0].into_iter(), 0.0, 0.0, -5.0, 30.0);
-        assert_eq!(model.bounds(1), [-5.0, 3.0, 9.0, 30.0]);
+        let mut model = Histograms::new(1, 3);
+        model.build(0, &sorted(&[8.0, 20.0, 1.0, 4.0, 2.0, 10.0]), 0.0, 0.0, -5.0, 30.0);
+        assert_eq!(model.bounds(0), [-5.0, 3.0, 9.0, 30.0]);
     }
 
     #[test]
     fn bounds_when_bins_do_not_divide_the_values() {
         // m = k * 5 / 3 = 1, 3.
-        let mut model = Histograms::new(1, 3, 5);
-        model.build(0, [1.0, 2.0, 3.0, 4.0, 5.0].into_iter(), 0.0, 0.0, 0.0, 6.0);
+        let mut model = Histograms::new(1, 3);
+        model.build(0, &sorted(&[1.0, 2.0, 3.0, 4.0, 5.0]), 0.0, 0.0, 0.0, 6.0);
         assert_eq!(model.bounds(0), [0.0, 1.5, 3.5, 6.0]);
     }
 
     #[test]
-    fn integers_are_ordered_as_their_numbers() {
-        let numbers = [-1e9, -2.5, -1e-9, 0.0, 1e-9, 2.5, 1e9];
-        assert!(numbers.windows(2).all(|pair| ordered(pair[0]) < ordered(pair[1])));
-        assert!(numbers.iter().all(|value| number(ordered(*value)) == *value));
-    }
-
-    #[test]
     fn learning_moves_values_towards_the_best() {
-        let mut model = Histograms::new(1, 2, 2);
-        model.build(0, [0.0, 10.0].into_iter(), 10.0, 0.08, -1.0, 11.0);
+        let mut model = Histograms::new(1, 2);
+        model.build(0, &sorted(&[0.0, 10.0]), 10.0, 0.08, -1.0, 11.0);
         // 0 becomes 0.8, 10 stays.
         assert_eq!(model.bounds(0), [-1.0, 5.4, 11.0]);
     }
 
     #[test]
     fn bins_are_equally_likely_and_uniform() {
-        let mut model = Histograms::new(1, 4, 4);
-        model.build(0, [1.0, 2.0, 3.0, 10.0].into_iter(), 0.0, 0.0, 0.0, 20.0);
+        let mut model = Histograms::new(1, 4);
+        model.build(0, &sorted(&[1.0, 2.0, 3.0, 10.0]), 0.0, 0.0, 0.0, 20.0);
         let mut stream = Stream::new(1, Purpose::Planner, 0);
         let (mut counts, mut places) = ([0; 4], 0.0);
         for _ in 0..40_000 {

@@ -4,8 +4,9 @@
 use auv_world::rng::Stream;
 
 use super::model::Histograms;
-use super::population::Population;
 use super::settings::Settings;
+use super::sorted::SortedGenes;
+use crate::population::Population;
 use crate::sections::{CellMap, SectionProblem};
 
 /// The histograms, and what is known of the safety of their bins.
@@ -24,20 +25,24 @@ impl Sampler {
     /// Room for the histograms of a problem.
     pub fn new(problem: &SectionProblem, settings: &Settings) -> Self {
         let genes = problem.genes();
-        let histograms = Histograms::new(genes, settings.bins(), settings.selected());
+        let histograms = Histograms::new(genes, settings.bins());
         let safe = settings.safe_bins.unwrap_or(problem.has_depth());
         let (cells, free) = if problem.has_depth() { (settings.bins() + 1, 0) } else { (0, settings.bins()) };
         let draws = settings.safe_draws;
         Self { histograms, safe, draws, cells: vec![0; cells * genes], free: vec![true; free * genes] }
     }
 
-    /// Builds the histograms from the best of a population.
-    pub fn learn(&mut self, problem: &SectionProblem, settings: &Settings, population: &Population) {
+    /// Builds the histograms from the best of a population, whose genes are given sorted.
+    pub fn learn(
+        &mut self,
+        problem: &SectionProblem,
+        settings: &Settings,
+        sorted: &SortedGenes,
+        population: &Population,
+    ) {
         let learning = if settings.learning { settings.learning_rate } else { 0.0 };
-        for gene in 0..problem.genes() {
-            let values = (0..settings.selected()).map(|rank| population.ranked(rank)[gene]);
-            let best = population.ranked(0)[gene];
-            self.histograms.build(gene, values, best, learning, problem.low()[gene], problem.high()[gene]);
+        for (gene, best) in population.member(0).iter().enumerate() {
+            self.histograms.build(gene, sorted, *best, learning, problem.low()[gene], problem.high()[gene]);
         }
         if self.safe {
             match problem.cells() {

@@ -5,17 +5,6 @@ use serde::Deserialize;
 use crate::error::{PlanError, within};
 use crate::parameters::Parameters;
 
-/// When the search ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum StopRule {
-    /// After the generation that found a feasible path.
-    #[default]
-    FirstFeasible,
-    /// When the generations or evaluations are spent.
-    Exhaust,
-}
-
 /// Whether a waypoint sees its left neighbour before or after that was moved (eq. 15).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -51,8 +40,6 @@ pub struct Settings {
     pub safe_bins: Option<bool>,
     /// How often, at most.
     pub safe_draws: u32,
-    /// When the search ends.
-    pub stop: StopRule,
 }
 
 impl Default for Settings {
@@ -68,7 +55,6 @@ impl Default for Settings {
             smoothing: Smoothing::Sequential,
             safe_bins: None,
             safe_draws: 200,
-            stop: StopRule::FirstFeasible,
         }
     }
 }
@@ -82,11 +68,6 @@ impl Settings {
     /// binNum: how many bins each histogram has.
     pub fn bins(&self) -> usize {
         self.bins.unwrap_or(self.selected())
-    }
-
-    /// The paper's number of generations for a world of 2 or 3 dimensions.
-    pub fn default_generations(dimensions: u8) -> u64 {
-        if dimensions == 2 { 100 } else { 300 }
     }
 }
 
