@@ -42,6 +42,21 @@ impl Stream {
         (self.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
     }
 
+    /// Two numbers uniform in [0, 1) with 32 bits each, for those who need many.
+    #[inline]
+    pub fn half_units(&mut self) -> [f64; 2] {
+        let bits = self.next_u64();
+        [bits as u32, (bits >> 32) as u32].map(|half| f64::from(half) * (1.0 / 4_294_967_296.0))
+    }
+
+    /// Fills with numbers uniform in [0, 1) with 32 bits each.
+    #[inline]
+    pub fn fill_half_units(&mut self, values: &mut [f64]) {
+        for pair in values.chunks_mut(2) {
+            pair.copy_from_slice(&self.half_units()[..pair.len()]);
+        }
+    }
+
     /// Uniform in [low, high).
     #[inline]
     pub fn uniform(&mut self, low: f64, high: f64) -> f64 {

@@ -49,7 +49,7 @@ pub fn plan_ade(request: &Request<'_>) -> Result<Plan, PlanError> {
     let (common, settings) = request.parse::<Settings>()?;
     let (size, defaults) = (settings.population, Defaults::lfhh(request));
     let horizon = defaults.horizon(&common, size);
-    population::plan(request, &common, size, defaults, |_| Ade { settings, horizon })
+    population::plan(request, &common, size, defaults, |_| Ade { settings, horizon, fates: Vec::new() })
 }
 
 /// F in a generation of `horizon`: F0 2^exp(1 - G / (G + 1 - g)).
@@ -61,6 +61,7 @@ fn factor(base: f64, generation: u64, horizon: u64) -> f64 {
 struct Ade {
     settings: Settings,
     horizon: u64,
+    fates: Vec<f64>,
 }
 
 impl Method for Ade {
@@ -70,7 +71,7 @@ impl Method for Ade {
         let factor = factor(self.settings.factor, generation, self.horizon);
         for child in 0..population.size() {
             let crossover = stream.uniform(self.settings.crossover_low, self.settings.crossover_high);
-            breed(problem, population, child, Rates { factor, crossover, walk: 0.0 }, stream);
+            breed(problem, population, child, Rates { factor, crossover, walk: 0.0 }, stream, &mut self.fates);
         }
     }
 }

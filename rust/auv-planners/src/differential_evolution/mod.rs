@@ -34,22 +34,44 @@ fn three_others(stream: &mut Stream, size: usize, not: usize) -> [usize; 3] {
 }
 
 /// Writes child `number`: its member, crossed with the mutant a + F (b - c). Genes out of their bounds are
-/// drawn anew.
-fn breed(problem: &SectionProblem, population: &mut Population, number: usize, rates: Rates, stream: &mut Stream) {
+/// drawn anew. `fates` is room for a number per gene.
+fn breed(
+    problem: &SectionProblem,
+    population: &mut Population,
+    number: usize,
+    rates: Rates,
+    stream: &mut Stream,
+    fates: &mut Vec<f64>,
+) {
+    let genes = population.genes();
     let [a, b, c] = three_others(stream, population.size(), number);
-    let certain = stream.below(population.genes());
+    // One number decides what becomes of a gene: it walks, it crosses, or it stays.
+    fates.resize(genes, 0.0);
+    stream.fill_half_units(fates);
+    fates[stream.below(genes)] = rates.walk;
+    let crosses = rates.walk + (1.0 - rates.walk) * rates.crossover;
+    let (low, high) = (problem.low(), problem.high());
     let ([parent, a, b, c], child) = population.members_and_child([number, a, b, c], number);
-    for gene in 0..child.len() {
-        let (low, high) = (problem.low()[gene], problem.high()[gene]);
-        child[gene] = if rates.walk > 0.0 && stream.unit() < rates.walk {
-            stream.uniform(low, high)
-        } else if gene == certain || stream.unit() < rates.crossover {
-            let mutant = a[gene] + rates.factor * (b[gene] - c[gene]);
-            if (low..=high).contains(&mutant) { mutant } else { stream.uniform(low, high) }
-        } else {
-            parent[gene]
-        };
+    let members = parent.iter().zip(a).zip(b.iter().zip(c));
+    let bounds = low.iter().zip(high);
+    for (((((parent, a), (b, c)), fate), (low, high)), child) in members.zip(&*fates).zip(bounds).zip(&mut *child) {
+        let mutant = a + rates.factor * (b - c);
+        let crosses = (*fate < crosses) | (*fate == rates.walk);
+        let redrawn = (*fate < rates.walk) | (crosses & ((mutant < *low) | (mutant > *high)));
+        *child = select(redrawn, f64::NAN, select(crosses, mutant, *parent));
     }
+    for ((child, low), high) in child.iter_mut().zip(low).zip(high) {
+        if child.is_nan() {
+            *child = stream.uniform(*low, *high);
+        }
+    }
+}
+
+/// One of two numbers without a branch, which could not be predicted.
+#[inline(always)]
+fn select(first: bool, a: f64, b: f64) -> f64 {
+    let mask = 0_u64.wrapping_sub(u64::from(first));
+    f64::from_bits((a.to_bits() & mask) | (b.to_bits() & !mask))
 }
 
 #[cfg(test)]
@@ -81,7 +103,7 @@ mod tests {
             population.set_child_cost(number, 1.0);
         }
         population.duel();
-        breed(&problem, &mut population, 0, rates, &mut Stream::new(1, Purpose::Planner, 0));
+        breed(&problem, &mut population, 0, rates, &mut Stream::new(1, Purpose::Planner, 0), &mut Vec::new());
         population.child(0).to_vec()
     }
 

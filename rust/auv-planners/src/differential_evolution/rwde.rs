@@ -52,12 +52,13 @@ pub fn plan_rwde(request: &Request<'_>) -> Result<Plan, PlanError> {
     let (common, settings) = request.parse::<Settings>()?;
     let size = settings.population;
     let horizon = Defaults::afhh().horizon(&common, size);
-    population::plan(request, &common, size, Defaults::afhh(), |_| Rwde { settings, horizon })
+    population::plan(request, &common, size, Defaults::afhh(), |_| Rwde { settings, horizon, fates: Vec::new() })
 }
 
 struct Rwde {
     settings: Settings,
     horizon: u64,
+    fates: Vec<f64>,
 }
 
 impl Rwde {
@@ -74,7 +75,7 @@ impl Method for Rwde {
     fn breed(&mut self, problem: &SectionProblem, population: &mut Population, generation: u64, stream: &mut Stream) {
         let rates = self.rates(generation);
         for child in 0..population.size() {
-            breed(problem, population, child, rates, stream);
+            breed(problem, population, child, rates, stream, &mut self.fates);
         }
     }
 }
@@ -85,7 +86,7 @@ mod tests {
 
     #[test]
     fn walks_less_and_less() {
-        let rwde = Rwde { settings: Settings::default(), horizon: 100 };
+        let rwde = Rwde { settings: Settings::default(), horizon: 100, fates: Vec::new() };
         let walk = |generation| rwde.rates(generation).walk;
         assert!((walk(0) - 0.1).abs() < 1e-12 && (walk(100) - 0.001).abs() < 1e-12);
         assert!((walk(50) - 0.0505).abs() < 1e-12 && (walk(300) - 0.001).abs() < 1e-12);

@@ -62,14 +62,15 @@ impl Histograms {
     /// to a part in four thousand million.
     #[inline]
     pub fn sample(&self, stream: &mut Stream, genes: &mut [f64]) {
-        let scale = self.bins as f64 / 4_294_967_296.0;
+        let bins = self.bins as u64;
         for (pair, bounds) in genes.chunks_mut(2).zip(self.bounds.chunks(2 * (self.bins + 1))) {
             let random = stream.next_u64();
-            let halves = [random as u32, (random >> 32) as u32];
+            let halves = [random & 0xFFFF_FFFF, random >> 32];
             for ((gene, bounds), half) in pair.iter_mut().zip(bounds.chunks_exact(self.bins + 1)).zip(halves) {
-                let place = f64::from(half) * scale;
-                let bin = place as usize;
-                *gene = bounds[bin] + (place - bin as f64) * (bounds[bin + 1] - bounds[bin]);
+                // Whole part and rest of half / 2^32 * bins.
+                let place = half * bins;
+                let bin = &bounds[(place >> 32) as usize..][..2];
+                *gene = bin[0] + f64::from(place as u32) * (1.0 / 4_294_967_296.0) * (bin[1] - bin[0]);
             }
         }
     }

@@ -80,42 +80,36 @@ impl Sampler {
     /// Draws a candidate.
     #[inline]
     pub fn sample(&self, problem: &SectionProblem, stream: &mut Stream, genes: &mut [f64]) {
-        if problem.has_depth() {
-            self.sample_pairs(problem, stream, genes);
-        } else {
-            self.sample_lines(stream, genes);
+        match problem.cells() {
+            _ if !self.safe => self.histograms.sample(stream, genes),
+            Some(map) if problem.has_depth() => self.sample_pairs(problem, map, stream, genes),
+            _ => self.sample_lines(stream, genes),
         }
     }
 
     fn sample_lines(&self, stream: &mut Stream, genes: &mut [f64]) {
         for (gene, value) in genes.iter_mut().enumerate() {
+            let free = &self.free[gene * self.histograms.bins()..];
             let mut draw = self.histograms.draw(stream);
-            if self.safe {
-                let free = &self.free[gene * self.histograms.bins()..];
-                for _ in 1..self.draws {
-                    if free[draw.0] {
-                        break;
-                    }
-                    draw = self.histograms.draw(stream);
+            for _ in 1..self.draws {
+                if free[draw.0] {
+                    break;
                 }
+                draw = self.histograms.draw(stream);
             }
             *value = self.histograms.value(gene, draw);
         }
     }
 
-    fn sample_pairs(&self, problem: &SectionProblem, stream: &mut Stream, genes: &mut [f64]) {
+    fn sample_pairs(&self, problem: &SectionProblem, map: &CellMap, stream: &mut Stream, genes: &mut [f64]) {
         let inner = problem.inner();
         for (i, &section) in problem.sections().iter().enumerate() {
             let mut pair = [self.histograms.draw(stream), self.histograms.draw(stream)];
-            if self.safe
-                && let Some(map) = problem.cells()
-            {
-                for _ in 1..self.draws {
-                    if map.has_free(section, self.span(i, pair[0].0), self.span(inner + i, pair[1].0)) {
-                        break;
-                    }
-                    pair = [self.histograms.draw(stream), self.histograms.draw(stream)];
+            for _ in 1..self.draws {
+                if map.has_free(section, self.span(i, pair[0].0), self.span(inner + i, pair[1].0)) {
+                    break;
                 }
+                pair = [self.histograms.draw(stream), self.histograms.draw(stream)];
             }
             genes[i] = self.histograms.value(i, pair[0]);
             genes[inner + i] = self.histograms.value(inner + i, pair[1]);

@@ -91,7 +91,7 @@ impl Method for Pso {
             for gene in 0..genes {
                 let (low, high) = (problem.low()[gene], problem.high()[gene]);
                 let i = particle * genes + gene;
-                let random = [stream.unit(), stream.unit()];
+                let random = stream.half_units();
                 let velocity = self.velocity(self.velocities[i], self.positions[i], own[gene], self.best[gene], random);
                 let most = most * (high - low).max(f64::MIN_POSITIVE);
                 self.velocities[i] = velocity.clamp(-most, most);
