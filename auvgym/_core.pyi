@@ -234,5 +234,5 @@ def path_cost(
     world: World, waypoints: NDArray[np.float64], cost: str, options_json: str
 ) -> dict[str, float]: ...
 def run_phases(
-    world: World, planner: str, seed: int, parameters_json: str
+    world: World, planner: str, seed: int, window: int | None, parameters_json: str
 ) -> list[tuple[float, bool, int, int, _Point]]: ...

@@ -146,15 +146,13 @@ def replan(
         route = _path("path", path)
         return plan(world, planner, start=position, goal=route[-1], seed=seed, **parameters)
     _check_planner(planner)
-    if isinstance(window, bool) or not isinstance(window, Integral) or window < 1:
-        raise _core.PlanningError(f"window = {window!r}: must be an integer, 1 section or more")
     found = _core.replan(
         world._core,
         _path("path", path),
         _point("position", position),
         planner,
         check_seed(seed),
-        int(window),
+        _window(window),
         _parameters(parameters),
     )
     return _plan(found)
@@ -168,8 +166,8 @@ def path_cost(
     Args:
         world: the world.
         waypoints: (n, 3) m, n >= 2.
-        cost: "lfhh" (eq. 6-10: length, curvature, block, current), "time" or "energy" (through the
-            real current).
+        cost: "lfhh" (its eq. 6-10: length, curvature, block, current), "afhh" (its eq. 1-5:
+            length, depth, smooth, block), "time" or "energy" (through the real current).
         **options: readings of the cost, see ``docs/planners.md``.
 
     Returns:
@@ -183,26 +181,41 @@ def path_cost(
 
 
 def run_phases(
-    world: World, planner: str = "lfhh", *, seed: int = 0, **parameters: Any
+    world: World,
+    planner: str = "lfhh",
+    *,
+    seed: int = 0,
+    window: int | None = 20,
+    **parameters: Any,
 ) -> list[Phase]:
-    """The papers' protocol: plan, travel, re-plan in a window at each change of the map's table.
+    """LFHH's experiment: plan, travel, re-plan in a window at each change of the map.
 
     Args:
-        world: a world at time 0 whose scenario has a table of changes and sections.
-        planner: a planner on sections.
+        world: a world whose scenario has map changes and sections; it is begun anew at time 0.
+        planner: one of :func:`list_planners`.
         seed: of the planner's random streams.
+        window: sections of the first window, which grows while no feasible path is found; None
+            re-plans the whole rest of the path.
         **parameters: the planner's own.
 
     Returns:
-        One phase for the first plan and one for each change; the papers report the mean cost
-        over the latter.
+        One phase for the first plan and one for each change; the paper reports the mean cost over
+        the latter.
 
     Raises:
         PlanningError, KeyboardInterrupt: as :func:`plan`.
     """
     _check_planner(planner)
-    phases = _core.run_phases(world._core, planner, check_seed(seed), _parameters(parameters))
+    window = None if window is None else _window(window)
+    seed = check_seed(seed)
+    phases = _core.run_phases(world._core, planner, seed, window, _parameters(parameters))
     return [Phase(*phase[:4], np.array(phase[4])) for phase in phases]
+
+
+def _window(window: int) -> int:
+    if isinstance(window, bool) or not isinstance(window, Integral) or window < 1:
+        raise _core.PlanningError(f"window = {window!r}: must be an integer, 1 section or more")
+    return int(window)
 
 
 def _plan(found: _core.FoundPlan) -> Plan:

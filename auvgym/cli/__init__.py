@@ -12,6 +12,7 @@ from auvgym.cli.leaderboard import leaderboard
 from auvgym.cli.listing import list_names
 from auvgym.cli.plan import plan
 from auvgym.cli.replay import replay
+from auvgym.cli.reproduce import reproduce
 
 app = typer.Typer(
     name="auvgym",
@@ -39,6 +40,7 @@ app.command("plan")(plan)
 app.command("evaluate")(evaluate)
 app.command("leaderboard")(leaderboard)
 app.command("replay")(replay)
+app.command("reproduce")(reproduce)
 
 
 def main() -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from auvgym.cli.console import INTERRUPTED, messages, output
+from auvgym.cli.progress import progress_bar
 
 if TYPE_CHECKING:
     from auvgym.evaluation import EpisodeResult, PolicySpec, Store, Suite
@@ -17,30 +18,10 @@ def fly_with_progress(
     suite: Suite, specs: Sequence[PolicySpec], store: Store, workers: int
 ) -> list[EpisodeResult]:
     """Run ``suite``; on Ctrl-C say what is kept and how to go on, and exit with 130."""
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
-
     from auvgym import evaluation
 
     console = messages()
-    bar = Progress(
-        TextColumn("{task.description}"),
-        BarColumn(bar_width=None),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
-        console=console,
-        disable=not console.is_terminal,
-        transient=True,
-        expand=True,
-    )
+    bar = progress_bar(console)
     total = len(suite.instances) * len(specs)
     with bar:
         # What an earlier run left is no measure of this one's speed: it is there from the start.

@@ -19,12 +19,13 @@ class Kind(enum.Enum):
     planners = "planners"
     policies = "policies"
     suites = "suites"
+    cards = "cards"
 
 
 def list_names(
     kind: Annotated[Kind | None, typer.Argument(help="One kind only; by default all.")] = None,
 ) -> None:
-    """List environments, scenarios, planners, policies and suites.
+    """List environments, scenarios, planners, policies, suites and cards.
 
     [dim]Example:[/] auvgym list policies
     """
@@ -86,10 +87,19 @@ def _suites() -> Iterator[tuple[str, str]]:
         yield name, f"{suite.description} {len(suite.instances)} instances, hash {suite.hash}"
 
 
+def _cards() -> Iterator[tuple[str, str]]:
+    from auvgym import reproduction
+
+    for name in reproduction.list_cards():
+        card = reproduction.load_card(name)
+        yield name, f"{card.title}: {card.source}"
+
+
 _ROWS = {
     Kind.environments: _environments,
     Kind.scenarios: _scenarios,
     Kind.planners: _planners,
     Kind.policies: _policies,
     Kind.suites: _suites,
+    Kind.cards: _cards,
 }

@@ -98,11 +98,11 @@ fn make_problem(bencher: divan::Bencher, name: &str) {
 /// The experiment: a plan and five re-plans.
 #[divan::bench(args = ["lfhh-2d-1", "lfhh-3d-1"], sample_count = 20)]
 fn six_phases(bencher: divan::Bencher, name: &str) {
-    let scenario = scenario(name);
+    let world = world(name);
     let mut seed = 0;
     bencher.bench_local(|| {
         seed += 1;
-        run(&scenario, 0, "lfhh", seed, "", Settings::default(), &Control::none())
+        run(&world, "lfhh", seed, "", Settings::default(), &Control::none())
     });
 }
 

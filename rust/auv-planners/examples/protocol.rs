@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use auv_planners::Control;
 use auv_planners::protocol::{Settings, run};
-use auv_world::Scenario;
+use auv_world::{Scenario, World};
 
 const SCENARIOS: [&str; 4] = ["lfhh-2d-1", "lfhh-3d-1", "lfhh-3d-2", "lfhh-3d-3"];
 
@@ -25,8 +25,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let scenario = Scenario::load(&folder.join(format!("{name}.toml")))?;
         for mission in 0..scenario.missions.len() {
             let began = Instant::now();
+            let world = World::new(scenario.clone(), 0, mission)?;
             let runs: Vec<_> = (0..seeds)
-                .map(|seed| run(&scenario, mission, planner, seed, parameters, Settings::default(), &Control::none()))
+                .map(|seed| run(&world, planner, seed, parameters, Settings::default(), &Control::none()))
                 .collect::<Result<_, _>>()?;
             let seconds = began.elapsed().as_secs_f64() / seeds as f64;
             let mean = |value: &dyn Fn(usize) -> f64| (0..runs.len()).map(value).sum::<f64>() / seeds as f64;

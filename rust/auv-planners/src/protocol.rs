@@ -1,9 +1,9 @@
 //! The LFHH paper's experiment (section IV-F and V): plan, travel until the map changes, re-plan in a
 //! window, and so on through the scenario's change table. F is the mean over the re-plans.
 
+use auv_world::World;
 use auv_world::math::{Vec3, distance};
 use auv_world::scenario::Change;
-use auv_world::{Scenario, World};
 
 use crate::control::Control;
 use crate::cost::CostTerms;
@@ -42,7 +42,7 @@ pub struct Phase {
     pub vehicle_m: Vec3,
     /// The cost of the planned path; in a re-plan that of the window.
     pub cost: CostTerms,
-    /// Whether the planned path is feasible.
+    /// Whether the planned path breaks no constraint of the cost.
     pub feasible: bool,
     /// Evaluations of all attempts.
     pub evaluations: u64,
@@ -69,22 +69,20 @@ pub struct Protocol {
     pub interrupted: bool,
 }
 
-/// Runs the experiment on a scenario's mission.
+/// Runs the experiment on a world's mission, from its time 0 on.
 ///
 /// # Errors
-/// [`PlanError`] as [`crate::plan`], or if the scenario has no such mission or no change.
-#[allow(clippy::too_many_arguments)]
+/// [`PlanError`] as [`crate::plan`], or if the world's scenario has no change.
 pub fn run(
-    scenario: &Scenario,
-    mission: usize,
+    world: &World,
     planner: &str,
     seed: u64,
     parameters_json: &str,
     settings: Settings,
     control: &Control<'_>,
 ) -> Result<Protocol, PlanError> {
-    let mut world = World::new(scenario.clone(), seed, mission)?;
-    let (every_m, changes) = match &scenario.change {
+    let mut world = world.fresh(world.seed());
+    let (every_m, changes) = match &world.scenario().change {
         Some(Change::Table(table)) => (table.every_m, table.phases.len()),
         Some(Change::Redraw(redraw)) => (redraw.every_m, DRAWN_CHANGES),
         None => return Err(PlanError::parameter("scenario.change", "none", "the experiment needs map changes")),
@@ -98,7 +96,7 @@ pub fn run(
     let mut phases = vec![Phase {
         vehicle_m: start,
         cost: plan.cost,
-        feasible: plan.feasible,
+        feasible: plan.cost.feasible,
         evaluations: plan.evaluations,
         window_sections: frame.count() - 1,
         attempts: 1,
@@ -121,7 +119,7 @@ pub fn run(
         phases.push(Phase {
             vehicle_m: vehicle,
             cost: replan.window.cost,
-            feasible: replan.window.feasible,
+            feasible: replan.window.cost.feasible,
             evaluations: replan.plan.evaluations,
             window_sections: replan.sections,
             attempts: replan.attempts,

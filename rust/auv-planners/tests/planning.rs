@@ -233,10 +233,10 @@ fn a_window_grows_to_the_end_and_shares_the_budget() {
 
 #[test]
 fn the_protocol_has_six_phases_and_repeats_itself() {
-    let scenario = scenario("lfhh-3d-1");
+    let world = World::new(scenario("lfhh-3d-1"), 0, 1).unwrap();
     let done = |trigger| {
         let settings = Settings { trigger, ..Settings::default() };
-        run(&scenario, 1, "lfhh", 4, "", settings, &Control::none()).unwrap()
+        run(&world, "lfhh", 4, "", settings, &Control::none()).unwrap()
     };
     let run = done(Trigger::PathLength);
     assert_eq!(run, done(Trigger::PathLength));
@@ -260,10 +260,9 @@ fn the_protocol_has_six_phases_and_repeats_itself() {
 /// moves it unseen. Thirty seeds give 0.64 (sd 0.08) and 29 feasible.
 #[test]
 fn the_level_of_the_cost_holds() {
-    let scenario = scenario("lfhh-3d-1");
-    let runs: Vec<_> = (0..6)
-        .map(|seed| run(&scenario, 0, "lfhh", seed, "", Settings::default(), &Control::none()).unwrap())
-        .collect();
+    let world = world("lfhh-3d-1");
+    let runs: Vec<_> =
+        (0..6).map(|seed| run(&world, "lfhh", seed, "", Settings::default(), &Control::none()).unwrap()).collect();
     let mean = runs.iter().map(|run| run.mean_cost).sum::<f64>() / 6.0;
     assert!((0.55..0.75).contains(&mean), "{mean}");
 }

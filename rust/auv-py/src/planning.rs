@@ -121,11 +121,16 @@ pub fn run_phases(
     world: &World,
     planner: &str,
     seed: u64,
+    window: Option<usize>,
     parameters_json: &str,
 ) -> PyResult<Vec<Phase>> {
-    let (scenario, mission) = (world.0.scenario().clone(), world.0.mission_index());
-    let settings = protocol::Settings::default();
-    let run = run(py, |control| protocol::run(&scenario, mission, planner, seed, parameters_json, settings, control))?;
+    let world = world.0.clone();
+    let window = window.map_or_else(replanning::Window::whole, |sections| replanning::Window {
+        sections,
+        ..replanning::Window::default()
+    });
+    let settings = protocol::Settings { window, ..protocol::Settings::default() };
+    let run = run(py, |control| protocol::run(&world, planner, seed, parameters_json, settings, control))?;
     let phases = run.phases.into_iter();
     Ok(phases
         .map(|phase| (phase.cost.total, phase.feasible, phase.evaluations, phase.window_sections, phase.vehicle_m))

@@ -1,0 +1,161 @@
+"""Cards: which table or figure of a paper is run again, and what the paper says. Kept as TOML."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass, field
+from importlib import resources
+from typing import Any, Literal, get_args
+
+from auvgym._names import unknown
+from auvgym.reproduction.runs import Protocol, Run, parameters_text
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib  # type: ignore[import-not-found,unused-ignore]
+
+#: What a card shows: costs or seconds case by case, curves over evaluations, or costs over parameters.
+View = Literal["costs", "seconds", "curves", "sweeps"]
+_FOLDER = resources.files("auvgym.reproduction") / "cards"
+
+
+class CardError(ValueError):
+    """A card that does not exist or is not as cards are."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """A planner as the paper ran it; the first column of a card is what the others are compared with.
+
+    Attributes:
+        label: its name in the paper.
+        planner: a planner's name.
+        parameters: its own parameters.
+        window: sections of the planning window, 0 for the whole rest of the path.
+    """
+
+    label: str
+    planner: str
+    parameters: dict[str, Any] = field(default_factory=dict)
+    window: int = 20
+
+
+@dataclass(frozen=True)
+class Case:
+    """A row: a scenario and a start/goal pair, and the paper's figures for each column if it has any."""
+
+    label: str
+    scenario: str
+    mission: int = 0
+    mean: tuple[float, ...] = ()
+    deviation: tuple[float, ...] = ()
+    seconds: tuple[float, ...] = ()
+    sign: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A figure: the planner of the card's first column with every combination of some parameters."""
+
+    title: str
+    parameters: dict[str, list[float]]
+
+
+@dataclass(frozen=True)
+class Card:
+    """A table or figure of a paper, to be run again.
+
+    Attributes:
+        name: of the command line.
+        title: in words.
+        source: paper and number of the table or figure.
+        view: what it shows.
+        protocol: how a run goes.
+        parameters: what all columns have in common.
+        columns: planners.
+        cases: rows.
+        sweeps: for the view "sweeps".
+        why: where and why we and the paper differ, in words (Markdown).
+    """
+
+    name: str
+    title: str
+    source: str
+    view: View
+    protocol: Protocol
+    columns: tuple[Column, ...]
+    cases: tuple[Case, ...]
+    parameters: dict[str, Any] = field(default_factory=dict)
+    sweeps: tuple[Sweep, ...] = ()
+    why: str = ""
+
+    @property
+    def journal(self) -> str:
+        """The experiment, whose runs all its cards share: the first part of the name."""
+        return self.name.partition("-")[0]
+
+    def run(self, case: Case, column: Column, seed: int) -> Run:
+        """One run of a cell."""
+        parameters = {**self.parameters, **column.parameters}
+        return Run(
+            self.protocol,
+            case.scenario,
+            case.mission,
+            column.planner,
+            parameters_text(parameters),
+            column.window if self.protocol == "phases" else 0,
+            seed,
+        )
+
+    def runs(self, seeds: int) -> list[Run]:
+        """Every run, seed by seed: what is stopped early has as many seeds everywhere."""
+        columns = [*self.columns, *(column for sweep in self.sweeps for column in swept(self, sweep))]
+        return [
+            self.run(case, column, seed)
+            for seed in range(seeds)
+            for case in self.cases
+            for column in columns
+        ]
+
+
+def swept(card: Card, sweep: Sweep) -> list[Column]:
+    """A column for each combination of a sweep's parameters, the last one changing fastest."""
+    base = card.columns[0]
+    combinations: list[dict[str, Any]] = [{}]
+    for name, values in sweep.parameters.items():
+        combinations = [{**one, name: value} for one in combinations for value in values]
+    return [
+        Column(str(one), base.planner, {**base.parameters, **one}, base.window)
+        for one in combinations
+    ]
+
+
+def list_cards() -> list[str]:
+    """Names of the cards."""
+    return sorted(
+        entry.name.removesuffix(".toml")
+        for entry in _FOLDER.iterdir()
+        if entry.name.endswith(".toml")
+    )
+
+
+def load_card(name: str) -> Card:
+    """Read a card.
+
+    Raises:
+        CardError: no such card.
+    """
+    if name not in list_cards():
+        raise CardError(unknown("card", name, list_cards()))
+    data = tomllib.loads((_FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
+    columns = tuple(Column(**column) for column in data.pop("columns"))
+    cases = tuple(
+        Case(**{key: tuple(value) if isinstance(value, list) else value for key, value in case.items()})
+        for case in data.pop("cases")
+    )
+    sweeps = tuple(Sweep(**sweep) for sweep in data.pop("sweeps", []))
+    card = Card(name=name, columns=columns, cases=cases, sweeps=sweeps, **data)
+    if card.view not in get_args(View):
+        raise CardError(f"card {name}: {unknown('view', card.view, list(get_args(View)))}")
+    return card

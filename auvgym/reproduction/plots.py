@@ -1,0 +1,128 @@
+"""Plots of a card, as PNG files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from auvgym._extras import require
+from auvgym.reproduction.card import Card, swept
+from auvgym.reproduction.cells import Cell, cells
+from auvgym.reproduction.runs import Outcome, Run, checkpoints
+
+#: Colours that differ for colour-blind readers, too (Okabe and Ito 2008).
+COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#7a6a00")
+_ABREAST = 3
+_PIXELS_PER_INCH = 110
+#: A path is feasible below this (LFHH and AFHH).
+_FEASIBLE = 2.0
+
+
+def draw(card: Card, outcomes: Mapping[Run, Outcome], seeds: int, folder: Path) -> list[str]:
+    """Draw a card's plots.
+
+    Returns:
+        Names of the files in ``folder``.
+
+    Raises:
+        ImportError: without matplotlib.
+    """
+    figures = require("matplotlib.figure", "report")
+    if card.view == "sweeps":
+        figure = _sweeps(figures, card, outcomes, seeds)
+    else:
+        panel = {"costs": _boxes, "seconds": _bars, "curves": _lines}[card.view]
+        figure = _panels(figures, card, cells(card, card.columns, outcomes, seeds), panel)
+    name = f"{card.name}.png"
+    figure.savefig(folder / name, dpi=_PIXELS_PER_INCH, metadata={"Software": None})
+    return [name]
+
+
+def _panels(figures: Any, card: Card, rows: list[list[Cell]], panel: Any) -> Any:
+    """A panel for each case."""
+    abreast = min(_ABREAST, len(rows))
+    down = -(-len(rows) // abreast)
+    figure = figures.Figure(figsize=(3.6 * abreast, 2.9 * down), layout="constrained")
+    axes = figure.subplots(down, abreast, squeeze=False, sharey=True)
+    for index, row in enumerate(rows):
+        axis = axes[index // abreast][index % abreast]
+        axis.set_title(row[0].case.label, fontsize=9)
+        axis.tick_params(labelsize=8)
+        axis.grid(axis="y", alpha=0.3)
+        panel(axis, row)
+    for index in range(len(rows), down * abreast):
+        axes[index // abreast][index % abreast].set_visible(False)
+    figure.suptitle(card.title, fontsize=11)
+    return figure
+
+
+def _boxes(axis: Any, row: list[Cell]) -> None:
+    boxes = axis.boxplot([cell.costs for cell in row], patch_artist=True, widths=0.6)
+    for patch, colour in zip(boxes["boxes"], COLOURS, strict=False):
+        patch.set(facecolor=colour, alpha=0.55)
+    for line in boxes["medians"]:
+        line.set(color="black")
+    places = range(1, len(row) + 1)
+    if row[0].case.mean:
+        axis.plot(places, row[0].case.mean, "D", color="black", ms=4, label="paper, mean")
+        axis.legend(fontsize=7, frameon=False)
+    axis.axhline(_FEASIBLE, color="grey", lw=0.8, ls=":")
+    axis.set_ylabel("cost", fontsize=8)
+    _name_columns(axis, row, places)
+
+
+def _bars(axis: Any, row: list[Cell]) -> None:
+    places = np.arange(len(row))
+    axis.set_yscale("log")
+    if row[0].case.seconds:
+        axis.bar(places - 0.2, row[0].case.seconds, 0.4, color="0.7", label="paper")
+    axis.bar(places + 0.2, [cell.seconds for cell in row], 0.4, color=COLOURS[0], label="ours")
+    axis.set_ylabel("seconds", fontsize=8)
+    axis.legend(fontsize=7, frameon=False)
+    _name_columns(axis, row, places)
+
+
+def _lines(axis: Any, row: list[Cell]) -> None:
+    for cell, colour in zip(row, COLOURS, strict=False):
+        curves = np.array([outcome.curve for outcome in cell.outcomes])
+        spent = checkpoints(int(cell.evaluations))
+        axis.fill_between(spent, *np.quantile(curves, [0.25, 0.75], axis=0), color=colour, alpha=0.2)
+        axis.plot(spent, curves.mean(axis=0), color=colour, lw=1.4, label=cell.column.label)
+    axis.axhline(_FEASIBLE, color="grey", lw=0.8, ls=":")
+    axis.set_xscale("log")
+    axis.set_xlabel("evaluations", fontsize=8)
+    axis.set_ylabel("best cost", fontsize=8)
+    axis.legend(fontsize=6, frameon=False)
+
+
+def _name_columns(axis: Any, row: list[Cell], places: Any) -> None:
+    labels = [cell.column.label for cell in row]
+    axis.set_xticks(list(places), labels, rotation=35, ha="right", fontsize=7)
+
+
+def _sweeps(figures: Any, card: Card, outcomes: Mapping[Run, Outcome], seeds: int) -> Any:
+    """A panel for each sweep and case: lines over the last parameter, one for each value of the first."""
+    down, abreast = len(card.sweeps), len(card.cases)
+    figure = figures.Figure(figsize=(4.6 * abreast, 3.2 * down), layout="constrained")
+    axes = figure.subplots(down, abreast, squeeze=False)
+    for sweep, line in zip(card.sweeps, axes, strict=True):
+        names, across = list(sweep.parameters), list(sweep.parameters.values())[-1]
+        for axis, row in zip(line, cells(card, swept(card, sweep), outcomes, seeds), strict=True):
+            for number, start in enumerate(range(0, len(row), len(across))):
+                part = row[start : start + len(across)]
+                first = f"{names[0]} {part[0].column.parameters[names[0]]:g}"
+                label = first if len(names) > 1 else None
+                costs = [cell.mean for cell in part]
+                axis.plot(across, costs, "o-", ms=3, lw=1, color=COLOURS[number], label=label)
+            axis.set_title(f"{sweep.title}: {row[0].case.label}", fontsize=9)
+            axis.set_xlabel(names[-1], fontsize=8)
+            axis.set_ylabel("mean cost", fontsize=8)
+            axis.tick_params(labelsize=8)
+            axis.grid(alpha=0.3)
+            if len(names) > 1:
+                axis.legend(fontsize=7, frameon=False)
+    figure.suptitle(card.title, fontsize=11)
+    return figure

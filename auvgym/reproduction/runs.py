@@ -1,0 +1,107 @@
+"""One run of an experiment: a planner, a scenario, a seed; and what came out."""
+
+from __future__ import annotations
+
+import json
+import time
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+import auvgym
+
+#: Points of a convergence curve: evenly spaced in the logarithm of the evaluations.
+CURVE_POINTS = 24
+Protocol = Literal["plan", "phases"]
+
+
+@dataclass(frozen=True)
+class Run:
+    """What is run; two equal runs have equal outcomes, their time apart.
+
+    Attributes:
+        protocol: "plan" plans once; "phases" is LFHH's experiment, see :func:`auvgym.run_phases`.
+        scenario: a shipped scenario.
+        mission: its start/goal pair.
+        planner: a planner's name.
+        parameters: the planner's, as a JSON object with sorted keys.
+        window: sections of the planning window, 0 for the whole rest of the path; for "phases".
+        seed: of the planner's random streams.
+    """
+
+    protocol: Protocol
+    scenario: str
+    mission: int
+    planner: str
+    parameters: str
+    window: int
+    seed: int
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a run gave.
+
+    Attributes:
+        cost: total cost of the plan, or the mean over the re-plans of all phases.
+        feasible: whether the plan, or every re-plan, breaks no constraint.
+        evaluations: fitness evaluations spent.
+        seconds: time of the run on this machine, the only figure that differs from run to run.
+        curve: for "plan" the best cost after :func:`checkpoints` evaluations.
+    """
+
+    cost: float
+    feasible: bool
+    evaluations: int
+    seconds: float
+    curve: tuple[float, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """As JSON has it."""
+        return asdict(self)
+
+
+def parameters_text(parameters: dict[str, Any]) -> str:
+    """Parameters as :class:`Run` keeps them."""
+    return json.dumps(parameters, sort_keys=True)
+
+
+def checkpoints(evaluations: int) -> np.ndarray[Any, np.dtype[np.int64]]:
+    """Evaluations at which a curve is read, (CURVE_POINTS,) from 200 to the last."""
+    return np.rint(np.geomspace(200, max(evaluations, 200), CURVE_POINTS)).astype(np.int64)
+
+
+def execute(run: Run) -> Outcome | str:
+    """The outcome of a run, or what went wrong in words; importable, so that processes can run it."""
+    try:
+        return _phases(run) if run.protocol == "phases" else _plan(run)
+    except ValueError as error:
+        return str(error)
+
+
+def _plan(run: Run) -> Outcome:
+    world = auvgym.World(run.scenario, seed=run.seed, mission=run.mission)
+    began = time.perf_counter()
+    plan = auvgym.plan(world, run.planner, seed=run.seed, **json.loads(run.parameters))
+    seconds = time.perf_counter() - began
+    spent, best = plan.history[:, 0], plan.history[:, 1]
+    last = np.searchsorted(spent, checkpoints(plan.evaluations), side="right") - 1
+    curve = tuple(float(f"{cost:.4g}") for cost in best[np.maximum(last, 0)])
+    return Outcome(plan.cost["total"], plan.feasible, plan.evaluations, seconds, curve)
+
+
+def _phases(run: Run) -> Outcome:
+    world = auvgym.World(run.scenario, seed=run.seed, mission=run.mission)
+    began = time.perf_counter()
+    window = run.window or None
+    parameters = json.loads(run.parameters)
+    phases = auvgym.run_phases(world, run.planner, seed=run.seed, window=window, **parameters)
+    seconds = time.perf_counter() - began
+    replans = phases[1:]
+    return Outcome(
+        cost=float(np.mean([phase.cost for phase in replans])),
+        feasible=all(phase.feasible for phase in replans),
+        evaluations=sum(phase.evaluations for phase in phases),
+        seconds=seconds,
+    )
