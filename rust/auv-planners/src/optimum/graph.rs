@@ -70,11 +70,14 @@ impl<'a> Graph<'a> {
             let [x, y, z] = problem.ends()[end];
             [(section as f64 - frame.section(x, y)).abs() * frame.spacing_m(), frame.lateral(x, y), z]
         });
-        let mut weights = vec![f32::INFINITY; (layers - 1) * nodes * steps];
-        let mut lengths = vec![f32::INFINITY; weights.len()];
+        let mut weights = Vec::with_capacity((layers - 1) * nodes * steps);
+        let mut lengths = Vec::with_capacity(weights.capacity());
         let mut slots = Vec::with_capacity(steps);
         let mut to = Vec::with_capacity(steps);
         for layer in 0..layers - 1 {
+            for array in [&mut weights, &mut lengths] {
+                array.resize((layer + 1) * nodes * steps, f32::INFINITY);
+            }
             let [first, end] = lattice.span(layer);
             for node in (0..nodes).filter(|node| (first..end).contains(&(node % lattice.columns))) {
                 if node % ASK_EVERY == 0 && control.interrupted() {

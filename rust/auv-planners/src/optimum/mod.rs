@@ -93,15 +93,14 @@ fn optimum(
 ) -> Optimum {
     let mut search = Search::new(problem, common, StopRule::Exhaust, control);
     let mut bound = None;
-    if search.problem().inner() > 0 {
-        let _stopped = run(&mut search, common, settings, &control, &mut bound);
+    let stopped = search.problem().inner() > 0 && run(&mut search, common, settings, &control, &mut bound).is_none();
+    let spent = search.evaluations() >= common.max_evaluations.unwrap_or(u64::MAX);
+    if stopped && !spent && !search.is_done() {
+        search.interrupt();
     }
     if search.evaluations() == 0 {
         let straight = straight(search.problem());
         search.evaluate(&straight);
-    }
-    if search.evaluations() < common.max_evaluations.unwrap_or(u64::MAX) && control.interrupted() {
-        search.interrupt();
     }
     Optimum { plan: search.finish(planner), bound }
 }
@@ -129,21 +128,28 @@ fn run(
     let mut solver = Solver::default();
     let lattice = Lattice::whole(&problem, grain, segments.longest());
     let mut graph = Graph::new(&problem, &lattice, &mut segments, control)?;
-    let mut visit = |path: &[usize]| {
-        search.evaluate(&lattice.genes(&problem, path))?;
-        search.end_generation();
-        (!search.is_done()).then_some(())
-    };
+    let mut visit = |path: &[usize]| offer(search, &lattice.genes(&problem, path));
     let least = sweep::optimise(&mut solver, &mut graph, &aim, control, &mut visit)?;
     *bound = Some(least);
     if least == f64::INFINITY {
         let found = sweep::least_offending(&mut solver, &mut graph, &aim, control)?;
-        visit(&found.path?)?;
+        match found.path {
+            Some(path) => visit(&path)?,
+            // Steps that reach too short a way for any path.
+            None => offer(search, &straight(&problem))?,
+        }
     }
     if settings.polish {
         polish::polish(search, &mut segments, &mut solver, &aim, lattice.grain, control)?;
     }
     Some(())
+}
+
+/// Evaluates a candidate; `None` to stop, since the budget is spent, the caller interrupted, or the best suffices.
+fn offer(search: &mut Search<'_>, genes: &[f64]) -> Option<()> {
+    search.evaluate(genes)?;
+    search.end_generation();
+    (!search.is_done()).then_some(())
 }
 
 /// The candidate whose waypoints lie on the line from start to goal, as far as the bounds allow.

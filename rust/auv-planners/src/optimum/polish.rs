@@ -5,6 +5,7 @@ use auv_world::math::distance;
 
 use super::graph::{Graph, Objective};
 use super::lattice::Lattice;
+use super::offer;
 use super::solver::Solver;
 use super::sweep::{Aim, OFFENCE};
 use crate::control::Control;
@@ -71,8 +72,7 @@ fn refine(
     if let Some(path) = found.path {
         let genes = lattice.genes(problem, &path);
         if genes != search.best().0 {
-            search.evaluate(&genes)?;
-            search.end_generation();
+            offer(search, &genes)?;
         }
     }
     Some(())

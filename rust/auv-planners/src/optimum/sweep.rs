@@ -15,6 +15,9 @@ use crate::cost::Cost;
 const TOLERANCE: f64 = 1e-9;
 /// At most so many mu are tried: some twenty suffice where any path does.
 const MOST_TRIALS: usize = 64;
+/// At each mu paths count that cost up to this much more than the best: what is known to lie so far above it
+/// bounds a wide interval.
+const HEADROOM: f64 = 0.02;
 /// What a segment that may not be taken counts where no path can do without: more than any whole path.
 pub const OFFENCE: f64 = 1e9;
 
@@ -121,15 +124,18 @@ impl Sweep<'_, '_, '_> {
     fn sample(&mut self, mu: f64, visit: &mut Visit<'_>) -> Option<Sample> {
         self.trials += 1;
         // A path that costs less than the best lies below this for the mu of its own length.
-        let ceiling = self.best - self.tangent(mu);
+        let ceiling = self.best + HEADROOM - self.tangent(mu);
         let all = [0, self.graph.lattice.rows];
         let found = self.solver.solve(self.graph, &self.aim.objective(mu), all, ceiling, true, self.control)?;
         if let Some(path) = &found.path {
             let (angles, length) = self.graph.sums(path);
-            self.best = self.best.min(1.0 - self.aim.direct / length + angles / self.aim.segments);
-            visit(path)?;
+            let cost = 1.0 - self.aim.direct / length + angles / self.aim.segments;
+            if cost < self.best {
+                self.best = cost;
+                visit(path)?;
+            }
         }
-        Some(Sample { mu, value: found.bound.min(ceiling) })
+        Some(Sample { mu, value: found.bound })
     }
 
     /// The least that a path can cost whose mu lies between two, and where.
