@@ -39,7 +39,7 @@ fn check(world: &World, plan: &Plan, cost: Cost, options: &CostOptions) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 16, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 10, ..ProptestConfig::default() })]
 
     #[test]
     fn plans_keep_their_promises(

@@ -175,14 +175,14 @@ impl<'a> Graph<'a> {
     }
 
     /// The step from start to a node.
-    pub fn from_start(&self, node: usize) -> Step {
+    pub fn first_step(&self, node: usize) -> Step {
         let [along, lateral, depth] = self.outer[0];
         let place = self.lattice.place(0, node);
         [along, place[0] - lateral, place[1] - depth]
     }
 
     /// The step from a node to the goal.
-    pub fn to_goal(&self, node: usize) -> Step {
+    pub fn last_step(&self, node: usize) -> Step {
         let [along, lateral, depth] = self.outer[1];
         let place = self.lattice.place(self.lattice.layers() - 1, node);
         [along, lateral - place[0], depth - place[1]]

@@ -152,7 +152,7 @@ impl Lattice {
 fn ticks(anchor: f64, step: f64, [low, high]: [f64; 2]) -> Vec<f64> {
     // Coarse enough for the count to be a number that memory can hold; the caller makes it coarser still.
     let step = step.max((high - low) / MOST_STEPS);
-    if !(high > low) {
+    if high <= low {
         return vec![low];
     }
     let first = ((low - anchor) / step - ROUNDING).ceil();

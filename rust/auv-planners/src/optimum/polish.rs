@@ -64,11 +64,14 @@ fn refine(
     let halves = if problem.has_depth() { HALVES_3D } else { HALVES_2D };
     let lattice = Lattice::tube(problem, genes, step, halves, band);
     let length = problem.path(genes).windows(2).map(|leg| distance(leg[0], leg[1])).sum();
-    let offence = if feasible { f64::INFINITY } else { OFFENCE };
-    let objective = Objective { offence, ..aim.objective(aim.slope(length)) };
+    let objective = aim.objective(aim.slope(length));
     let mut graph = Graph::new(problem, &lattice, segments, control)?;
-    let turns = feasible && aim.turns();
-    let found = solver.solve(&mut graph, &objective, [0, lattice.rows], f64::INFINITY, turns, control)?;
+    let all = [0, lattice.rows];
+    let mut found = solver.solve(&mut graph, &objective, all, f64::INFINITY, aim.turns(), control)?;
+    if found.path.is_none() && !feasible {
+        let lenient = Objective { offence: OFFENCE, ..objective };
+        found = solver.solve(&mut graph, &lenient, all, f64::INFINITY, false, control)?;
+    }
     if let Some(path) = found.path {
         let genes = lattice.genes(problem, &path);
         if genes != search.best().0 {

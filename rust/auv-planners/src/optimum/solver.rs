@@ -153,10 +153,10 @@ impl Solver {
             if node % ASK_EVERY == 0 && control.interrupted() {
                 return None;
             }
-            let arrived = graph.from_start(node);
+            let arrived = graph.first_step(node);
             if layers == 1 {
                 let total = value + rest[node];
-                if total < best.0 && graph.may_turn(arrived, graph.to_goal(node)) {
+                if total < best.0 && graph.may_turn(arrived, graph.last_step(node)) {
                     best = (total, node, 0);
                 }
                 continue;
@@ -177,7 +177,7 @@ impl Solver {
                 let arrived = graph.between(layer - 1, from, node);
                 if layer + 1 == layers {
                     let total = value + rest[layer * nodes + node];
-                    if total < best.0 && total <= ceiling && graph.may_turn(arrived, graph.to_goal(node)) {
+                    if total < best.0 && total <= ceiling && graph.may_turn(arrived, graph.last_step(node)) {
                         best = (total, node, step);
                     }
                     continue;
@@ -283,7 +283,7 @@ fn after(graph: &Graph<'_>, step: usize, from: usize) -> usize {
 
 /// Whether no turn of a path is too sharp.
 fn keeps_turns(graph: &Graph<'_>, path: &[usize]) -> bool {
-    let mut arrived = graph.from_start(path[0]);
+    let mut arrived = graph.first_step(path[0]);
     for (layer, pair) in path.windows(2).enumerate() {
         let leaving = graph.between(layer, pair[0], pair[1]);
         if !graph.may_turn(arrived, leaving) {
@@ -291,5 +291,5 @@ fn keeps_turns(graph: &Graph<'_>, path: &[usize]) -> bool {
         }
         arrived = leaving;
     }
-    graph.may_turn(arrived, graph.to_goal(path[path.len() - 1]))
+    graph.may_turn(arrived, graph.last_step(path[path.len() - 1]))
 }
