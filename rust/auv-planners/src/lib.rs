@@ -10,6 +10,7 @@ pub mod error;
 pub mod gaussian;
 pub mod grid;
 pub mod histogram;
+pub mod optimum;
 pub mod parameters;
 pub mod particle_swarm;
 pub mod plan;

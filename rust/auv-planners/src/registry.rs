@@ -9,7 +9,7 @@ use crate::error::PlanError;
 use crate::parameters::{Common, Parameters, parse, parse_common};
 use crate::plan::Plan;
 use crate::sections::SectionProblem;
-use crate::{differential_evolution, gaussian, grid, histogram, particle_swarm};
+use crate::{differential_evolution, gaussian, grid, histogram, optimum, particle_swarm};
 
 /// A question to a planner.
 #[derive(Clone, Copy)]
@@ -87,6 +87,7 @@ const PLANNERS: &[Entry] = &[
     Entry { name: "ade", run: differential_evolution::plan_ade },
     Entry { name: "rwde", run: differential_evolution::plan_rwde },
     Entry { name: "pso", run: particle_swarm::plan_pso },
+    Entry { name: "section-optimum", run: optimum::plan_section_optimum },
 ];
 
 /// The names of all planners.

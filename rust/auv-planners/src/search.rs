@@ -74,6 +74,26 @@ impl<'a> Search<'a> {
         Some(terms.total)
     }
 
+    /// The best candidate so far and whether it is feasible; zeros before the first.
+    pub fn best(&self) -> (&[f64], bool) {
+        (&self.best, self.feasible)
+    }
+
+    /// What it costs; infinite before the first.
+    pub fn best_total(&self) -> f64 {
+        self.best_total
+    }
+
+    /// Number of candidates evaluated.
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations
+    }
+
+    /// Notes that the caller interrupted, for planners that work long between evaluations.
+    pub fn interrupt(&mut self) {
+        self.interrupted = true;
+    }
+
     /// Whether what was found suffices.
     pub fn is_done(&self) -> bool {
         let feasible = match self.stop {

@@ -8,8 +8,9 @@ use wide::{f32x8, f64x8};
 
 use super::track::{LANES, Lanes};
 
-/// From here on, in s = r^2 / zeta^2, exp(-s) no longer counts beside 1.
-const CORE_END: f32 = 16.0;
+/// From here on, in s = r^2 / zeta^2, exp(-s) is lost beside 1 in single precision (it is less than 2^-25), so
+/// that leaving it out changes nothing and no segment's angle depends on its neighbours'.
+const CORE_END: f32 = 17.5;
 /// Below this s the series of (1 - exp(-s)) / s keeps more digits than the exponential.
 const CENTRE: f32 = 0.0625;
 /// Adding and taking away 1.5 * 2^23 rounds to the nearest integer and leaves it in the low bits.

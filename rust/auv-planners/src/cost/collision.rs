@@ -70,11 +70,11 @@ impl Test {
         match self {
             Self::Discs(strips) => strips.blocked(track),
             Self::Walk { world, margin } => {
-                let ends = ends(track).map(|point| OWN_CLEARANCE * world.clearance(point));
+                let rooms = ends(track).map(|point| OWN_CLEARANCE * world.clearance(point));
                 let blocked = |i: &usize| {
-                    let shortest = SHORTEST_STEP * track.length[*i];
-                    let required = required(*margin + 0.5 * shortest, ends, *i, track.segments());
-                    walk(world, track, *i, required, shortest)
+                    let room = room(rooms, *i, track.segments());
+                    let step = [track.dx[*i], track.dy[*i], track.dz[*i]];
+                    walk(world, track.point(*i), step, track.length[*i], *margin, room)
                 };
                 (0..track.segments()).filter(blocked).count()
             }
@@ -90,23 +90,57 @@ impl Test {
     }
 }
 
+impl Test {
+    /// What start and goal of a path have of clearance, as far as it is asked of its first and last segment (m).
+    pub fn rooms(&self, ends: [Vec3; 2]) -> [f64; 2] {
+        match self {
+            Self::Discs(strips) => strips.rooms(ends),
+            Self::Walk { world, .. } => ends.map(|point| OWN_CLEARANCE * world.clearance(point)),
+            Self::Cells { .. } => [f64::INFINITY; 2],
+        }
+    }
+
+    /// Whether a single segment collides, as [`Test::blocked`] judges it in a path: `room` is the least of
+    /// what the path's ends have that are its own, or infinite.
+    pub fn blocks(&self, from: Vec3, to: Vec3, room: f64) -> bool {
+        let step: Vec3 = std::array::from_fn(|axis| to[axis] - from[axis]);
+        match self {
+            Self::Discs(strips) => {
+                let span = [from, to].map(|point| strips.span_of(point[0], point[1]));
+                strips.hit(span, from, step, strips.margin.min(room))
+            }
+            Self::Walk { world, margin } => {
+                let length = (step[0] * step[0] + step[1] * step[1] + step[2] * step[2]).sqrt();
+                walk(world, from, step, length, *margin, room)
+            }
+            Self::Cells { frame, map, ends_only, .. } => {
+                let [from, to] = [from, to].map(|[x, y, z]| {
+                    [map.scale_section(frame.section(x, y)), map.scale_lateral(frame.lateral(x, y)), map.scale_depth(z)]
+                });
+                let cells = [from, to].map(|place| map.cell(place));
+                if *ends_only { map.is_blocked_cell(cells[1]) } else { samples_blocked(map, [from, to], cells) }
+            }
+        }
+    }
+}
+
 fn ends(track: &Track) -> [Vec3; 2] {
     [track.point(0), track.point(track.segments())]
 }
 
-/// The clearance that segment `i` must keep: what is wanted, but at the ends of the path no more than
-/// they can have; a vehicle that already is too near may leave.
+/// The clearance beyond which nothing is asked of segment `i`: at the ends of the path no more than they can
+/// have; a vehicle that already is too near may leave.
 #[inline]
-fn required(wanted: f64, ends: [f64; 2], i: usize, segments: usize) -> f64 {
-    let at_start = if i == 0 { wanted.min(ends[0]) } else { wanted };
-    if i + 1 == segments { at_start.min(ends[1]) } else { at_start }
+fn room(rooms: [f64; 2], i: usize, segments: usize) -> f64 {
+    let at_start = if i == 0 { rooms[0] } else { f64::INFINITY };
+    if i + 1 == segments { at_start.min(rooms[1]) } else { at_start }
 }
 
-/// Whether segment `i` comes nearer to a solid than `required`, walking by clearances.
-fn walk(world: &World, track: &Track, i: usize, required: f64, shortest: f64) -> bool {
-    let length = track.length[i];
-    let from = track.point(i);
-    let step = [track.dx[i], track.dy[i], track.dz[i]];
+/// Whether a segment comes nearer to a solid than `margin`, or than `room` if that is less, walking by
+/// clearances.
+fn walk(world: &World, from: Vec3, step: Vec3, length: f64, margin: f64, room: f64) -> bool {
+    let shortest = SHORTEST_STEP * length;
+    let required = (margin + 0.5 * shortest).min(room);
     let mut walked = 0.0;
     loop {
         let part = if walked < length { walked / length } else { 1.0 };
@@ -207,19 +241,24 @@ impl Places {
 
     #[inline]
     fn samples_blocked(&self, map: &CellMap, i: usize) -> bool {
-        // From one section to the next all samples lie in one rectangle of cells, which may be free.
-        if map.is_free_between(self.cell(i), self.cell(i + 1)) {
-            return false;
-        }
-        let (from, to) = (self.at(i), self.at(i + 1));
-        let step = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
-        let mut samples = [[0.0; 3]; SAMPLES];
-        for (k, sample) in samples.iter_mut().enumerate() {
-            let part = (k + 1) as f64 / SAMPLES as f64;
-            *sample = [from[0] + part * step[0], from[1] + part * step[1], from[2] + part * step[2]];
-        }
-        map.any_blocked(samples)
+        samples_blocked(map, [self.at(i), self.at(i + 1)], [self.cell(i), self.cell(i + 1)])
     }
+}
+
+/// Whether any sample of a segment lies in a blocked cell, from its scaled ends and their cells.
+#[inline(always)]
+fn samples_blocked(map: &CellMap, [from, to]: [[f64; 3]; 2], cells: [[u32; 3]; 2]) -> bool {
+    // From one section to the next all samples lie in one rectangle of cells, which may be free.
+    if map.is_free_between(cells[0], cells[1]) {
+        return false;
+    }
+    let step = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
+    let mut samples = [[0.0; 3]; SAMPLES];
+    for (k, sample) in samples.iter_mut().enumerate() {
+        let part = (k + 1) as f64 / SAMPLES as f64;
+        *sample = [from[0] + part * step[0], from[1] + part * step[1], from[2] + part * step[2]];
+    }
+    map.any_blocked(samples)
 }
 
 /// Discs, listed for each strip between two sections that they reach into.
@@ -273,46 +312,55 @@ impl Strips {
         self.discs.iter().map(distance).fold(f64::INFINITY, f64::min)
     }
 
+    fn rooms(&self, ends: [Vec3; 2]) -> [f64; 2] {
+        if self.margin > 0.0 { ends.map(|point| OWN_CLEARANCE * self.clearance(point)) } else { [f64::INFINITY; 2] }
+    }
+
+    /// First and last strip of a waypoint.
+    #[inline]
+    fn span_of(&self, x: f64, y: f64) -> [u32; 2] {
+        let section = self.frame.section(x, y);
+        [OVERLAP, -OVERLAP].map(|overlap| strip_of(section + overlap, self.strips()) as u32)
+    }
+
     #[inline]
     fn blocked(&mut self, track: &Track) -> usize {
-        let n = track.points();
-        let strips = self.strips();
         if self.along.moved(track) {
-            self.span.resize(n, [0; 2]);
-            for (span, (x, y)) in self.span.iter_mut().zip(track.x.iter().zip(&track.y)) {
-                let section = self.frame.section(*x, *y);
-                *span = [strip_of(section + OVERLAP, strips) as u32, strip_of(section - OVERLAP, strips) as u32];
+            self.span.resize(track.points(), [0; 2]);
+            for i in 0..track.points() {
+                self.span[i] = self.span_of(track.x[i], track.y[i]);
             }
         }
         let segments = track.segments();
-        let ends = if self.margin > 0.0 {
-            ends(track).map(|point| OWN_CLEARANCE * self.clearance(point))
-        } else {
-            [f64::INFINITY; 2]
-        };
+        let rooms = self.rooms(ends(track));
         let blocked = |i: &usize| {
             let i = *i;
-            let (from, to) = (self.span[i], self.span[i + 1]);
-            let first = from[0].min(to[0]);
-            let last = from[1].max(to[1]).max(first);
-            let required = required(self.margin, ends, i, segments);
-            let discs = &self.discs[self.first[first as usize] as usize..self.first[last as usize + 1] as usize];
-            let (x, y, dx, dy) = (track.x[i], track.y[i], track.dx[i], track.dy[i]);
-            let square = dx * dx + dy * dy;
-            // Without branches or divisions: the disc's centre is near the start, near the end, or beside
-            // the segment and near its line.
-            discs.iter().fold(false, |hit, disc| {
-                let (cx, cy) = (disc.centre[0] - x, disc.centre[1] - y);
-                let reach = (disc.radius + required).max(0.0);
-                let reach2 = reach * reach;
-                let (along, across) = (cx * dx + cy * dy, cx * dy - cy * dx);
-                let from_start = cx * cx + cy * cy;
-                let from_end = from_start - 2.0 * along + square;
-                let beside = (along > 0.0) & (along < square) & (across * across < reach2 * square);
-                hit | (from_start < reach2) | (from_end < reach2) | beside
-            })
+            let step = [track.dx[i], track.dy[i], 0.0];
+            let required = self.margin.min(room(rooms, i, segments));
+            self.hit([self.span[i], self.span[i + 1]], track.point(i), step, required)
         };
         (0..segments).filter(blocked).count()
+    }
+
+    /// Whether a segment comes nearer to a disc than `required`.
+    #[inline(always)]
+    fn hit(&self, [from, to]: [[u32; 2]; 2], [x, y, _]: Vec3, [dx, dy, _]: Vec3, required: f64) -> bool {
+        let first = from[0].min(to[0]);
+        let last = from[1].max(to[1]).max(first);
+        let discs = &self.discs[self.first[first as usize] as usize..self.first[last as usize + 1] as usize];
+        let square = dx * dx + dy * dy;
+        // Without branches or divisions: the disc's centre is near the start, near the end, or beside the
+        // segment and near its line.
+        discs.iter().fold(false, |hit, disc| {
+            let (cx, cy) = (disc.centre[0] - x, disc.centre[1] - y);
+            let reach = (disc.radius + required).max(0.0);
+            let reach2 = reach * reach;
+            let (along, across) = (cx * dx + cy * dy, cx * dy - cy * dx);
+            let from_start = cx * cx + cy * cy;
+            let from_end = from_start - 2.0 * along + square;
+            let beside = (along > 0.0) & (along < square) & (across * across < reach2 * square);
+            hit | (from_start < reach2) | (from_end < reach2) | beside
+        })
     }
 }
 

@@ -76,7 +76,7 @@ impl Flow {
     pub fn angles(&self, track: &mut Track) {
         for first in (0..track.padded()).step_by(LANES) {
             let (dx, dy) = (single(lanes(&track.dx, first)), single(lanes(&track.dy, first)));
-            let [x, y, z] = at(track, first, 0.5);
+            let [x, y, z] = at(track, first, &[0.5; LANES]);
             let [u, v] = match &self.field {
                 Field::Vortices { single, .. } => single.velocity(&x, &y),
                 Field::Any(_) => self.velocity(&x, &y, &z).map(angle::single),
@@ -89,24 +89,30 @@ impl Flow {
     }
 
     /// Time along each segment (s) for a vehicle of that speed through water (m/s), written to the
-    /// track's results; gives the number of segments on which the current beats it.
+    /// track's results; names the segments on which the current beats it.
     ///
-    /// Ground speed is V_par + sqrt(V_w^2 - V_perp^2), sampled evenly at three points or, where the longest
-    /// segment of the track spans more than three stretches of the world's resolution, at one for each. A
-    /// beaten vehicle is charged as if it crept, so that better plans still cost less.
-    pub fn times(&self, track: &mut Track, speed: f64) -> usize {
-        let mut slow = [false; LANES];
-        let mut beaten = 0;
+    /// Ground speed is V_par + sqrt(V_w^2 - V_perp^2), sampled evenly at three points or, where the segment
+    /// spans more than three stretches of the world's resolution, at one for each. A beaten vehicle is charged
+    /// as if it crept, so that better plans still cost less.
+    pub fn times(&self, track: &mut Track, speed: f64, mut beaten: impl FnMut(usize)) {
         let creep = SLOWEST * speed;
-        let longest = track.length[..track.segments()].iter().fold(0.0, |a: f64, b| a.max(*b));
-        let samples = (longest / self.resolution).ceil().clamp(SAMPLES.0, SAMPLES.1);
         for first in (0..track.padded()).step_by(LANES) {
             let (dx, dy) = (lanes(&track.dx, first), lanes(&track.dy, first));
             let length = lanes(&track.length, first);
+            let mut samples = [0.0; LANES];
+            for lane in 0..LANES {
+                samples[lane] = (length[lane] / self.resolution).ceil().clamp(SAMPLES.0, SAMPLES.1);
+            }
+            let most = samples.iter().fold(0.0, |a: f64, b| a.max(*b));
             let mut slowness = [0.0; LANES];
-            slow.fill(false);
-            for sample in 0..samples as usize {
-                let [x, y, z] = at(track, first, (sample as f64 + 0.5) / samples);
+            let mut slow = [false; LANES];
+            for sample in 0..most as usize {
+                let sample = sample as f64;
+                let mut part = [0.0; LANES];
+                for lane in 0..LANES {
+                    part[lane] = (sample + 0.5) / samples[lane];
+                }
+                let [x, y, z] = at(track, first, &part);
                 let [u, v] = self.velocity(&x, &y, &z);
                 for lane in 0..LANES {
                     let inverse = if length[lane] > 0.0 { 1.0 / length[lane] } else { 0.0 };
@@ -114,16 +120,19 @@ impl Flow {
                     let across2 = u[lane] * u[lane] + v[lane] * v[lane] - along * along;
                     let ground = along + (speed * speed - across2).max(0.0).sqrt();
                     let passes = across2 < speed * speed && ground >= creep;
-                    slowness[lane] += 1.0 / if passes { ground } else { creep };
-                    slow[lane] |= !passes;
+                    // A shorter segment in these lanes has no such sample.
+                    let counts = sample < samples[lane];
+                    slowness[lane] += if counts { 1.0 / if passes { ground } else { creep } } else { 0.0 };
+                    slow[lane] |= !passes & counts;
                 }
             }
             for lane in 0..LANES {
-                track.result[first + lane] = length[lane] * slowness[lane] / samples;
-                beaten += usize::from(slow[lane] && first + lane < track.segments());
+                track.result[first + lane] = length[lane] * slowness[lane] / samples[lane];
+                if slow[lane] && first + lane < track.segments() {
+                    beaten(first + lane);
+                }
             }
         }
-        beaten
     }
 }
 
@@ -134,12 +143,12 @@ fn lanes(values: &[f64], first: usize) -> Lanes {
     lanes
 }
 
-/// The points that divide LANES segments at `part` of their way.
+/// The points that divide LANES segments at a part of their way each.
 #[inline(always)]
-fn at(track: &Track, first: usize, part: f64) -> [Lanes; 3] {
+fn at(track: &Track, first: usize, part: &Lanes) -> [Lanes; 3] {
     let place = |from: &[f64], step: &[f64]| {
         let (from, step) = (lanes(from, first), lanes(step, first));
-        std::array::from_fn(|lane| from[lane] + part * step[lane])
+        std::array::from_fn(|lane| from[lane] + part[lane] * step[lane])
     };
     [place(&track.x, &track.dx), place(&track.y, &track.dy), place(&track.z, &track.dz)]
 }

@@ -16,18 +16,18 @@ use crate::sections::{CellMap, Frame};
 /// A cost, prepared for a world as it is now.
 #[derive(Debug, Clone)]
 pub struct Evaluator {
-    cost: Cost,
-    flow: Flow,
-    test: Test,
-    vehicle: Vehicle,
+    pub(super) cost: Cost,
+    pub(super) flow: Flow,
+    pub(super) test: Test,
+    pub(super) vehicle: Vehicle,
     /// A change of direction is too sharp if its cosine is less.
-    turn_limit: f64,
+    pub(super) turn_limit: f64,
     alpha: AlphaRange,
     /// A step of cost `afhh` is too long if it is longer (m).
-    longest_step: f64,
+    pub(super) longest_step: f64,
     /// Depth of the box (m).
     depth: f64,
-    track: Track,
+    pub(super) track: Track,
 }
 
 impl Evaluator {
@@ -111,7 +111,9 @@ impl Evaluator {
             }
             Cost::Time | Cost::Energy => {
                 let speed = self.vehicle.speed_mps;
-                terms.current = penalty(self.flow.times(track, speed));
+                let mut beaten = 0;
+                self.flow.times(track, speed, |_| beaten += 1);
+                terms.current = penalty(beaten);
                 terms.feasible &= terms.current == 0.0;
                 let time_s = track.sum_results();
                 // Power is constant, so energy ranks paths as time does; only the unit differs.

@@ -5,10 +5,12 @@ mod collision;
 mod current;
 mod evaluator;
 mod options;
+mod segments;
 mod track;
 
 pub use evaluator::Evaluator;
 pub use options::{AlphaRange, Angle, Collision, Cost, CostOptions};
+pub(crate) use segments::Segments;
 
 use auv_world::World;
 use auv_world::math::Vec3;

@@ -71,6 +71,21 @@ impl Track {
         [self.x[i], self.y[i], self.z[i]]
     }
 
+    /// Segments from one point to each of several, instead of a path.
+    pub fn fan(&mut self, from: [f64; 3], to: &[[f64; 3]]) {
+        self.resize(to.len() + 1);
+        for (axis, place) in [&mut self.x, &mut self.y, &mut self.z].into_iter().enumerate() {
+            place.fill(from[axis]);
+        }
+        for (axis, step) in [&mut self.dx, &mut self.dy, &mut self.dz].into_iter().enumerate() {
+            step[to.len()..].fill(0.0);
+            for (step, to) in step.iter_mut().zip(to) {
+                *step = to[axis] - from[axis];
+            }
+        }
+        self.measure_lengths();
+    }
+
     /// Computes the segments from the waypoints.
     #[inline]
     pub fn measure(&mut self) {
@@ -85,6 +100,11 @@ impl Track {
                 *step = to - from;
             }
         }
+        self.measure_lengths();
+    }
+
+    #[inline(always)]
+    fn measure_lengths(&mut self) {
         let steps = self.dx.iter().zip(&self.dy).zip(&self.dz);
         for (length, ((dx, dy), dz)) in self.length.iter_mut().zip(steps) {
             *length = (dx * dx + dy * dy + dz * dz).sqrt();

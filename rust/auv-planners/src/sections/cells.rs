@@ -192,6 +192,13 @@ impl CellMap {
         }
     }
 
+    /// Section, column and row of a scaled place, the nearest ones if it lies outside.
+    #[inline]
+    pub fn cell(&self, scaled: [f64; 3]) -> [u32; 3] {
+        let count = [self.sections, self.across, self.down];
+        std::array::from_fn(|axis| nearest(scaled[axis], count[axis]) as u32)
+    }
+
     /// Whether a cell is blocked.
     #[inline]
     pub fn is_blocked_cell(&self, cell: [u32; 3]) -> bool {

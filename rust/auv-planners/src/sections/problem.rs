@@ -5,7 +5,7 @@ use auv_world::World;
 use auv_world::math::Vec3;
 
 use super::{CellMap, Frame};
-use crate::cost::{Cost, CostOptions, CostTerms, Evaluator};
+use crate::cost::{Cost, CostOptions, CostTerms, Evaluator, Segments};
 use crate::error::PlanError;
 
 /// A section must be at least this far from start and target, in sections, to get a waypoint.
@@ -112,6 +112,16 @@ impl SectionProblem {
     /// Start and target (m).
     pub fn ends(&self) -> [Vec3; 2] {
         [self.start, self.target]
+    }
+
+    /// What single segments cost.
+    pub(crate) fn segments(&self) -> Segments {
+        Segments::new(&self.evaluator, self.ends())
+    }
+
+    /// The depth of all waypoints where they have none of their own (m).
+    pub fn level(&self) -> f64 {
+        self.level
     }
 
     /// The inner waypoint `i` of a candidate (m).
