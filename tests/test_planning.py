@@ -21,7 +21,7 @@ from auvgym import PlanningError, World
 
 PLANNERS = auvgym.list_planners()
 # Exact searches on a graph: they end by themselves and know neither generations nor a budget.
-GRAPHS = {"astar"}
+GRAPHS = {"dijkstra", "astar"}
 POPULATIONS = [planner for planner in PLANNERS if planner not in GRAPHS]
 WORLDS = ["lfhh-2d-1", "lfhh-3d-1"]
 

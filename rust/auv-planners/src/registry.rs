@@ -78,6 +78,7 @@ struct Entry {
 
 /// All planners.
 const PLANNERS: &[Entry] = &[
+    Entry { name: "dijkstra", run: grid::plan_dijkstra },
     Entry { name: "astar", run: grid::plan_astar },
     Entry { name: "lfhh", run: histogram::plan_lfhh },
     Entry { name: "fhh", run: histogram::plan_fhh },
