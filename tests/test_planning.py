@@ -21,8 +21,10 @@ from auvgym import PlanningError, World
 
 PLANNERS = auvgym.list_planners()
 # Exact searches on a graph: they end by themselves and know neither generations nor a budget.
-GRAPHS = {"astar"}
-POPULATIONS = [planner for planner in PLANNERS if planner not in GRAPHS]
+GRAPHS = {"dijkstra", "astar"}
+# Searches by random samples: their budget is counted in motions, and what they find they shorten.
+SAMPLERS = {"rrt-star", "prm-star"}
+POPULATIONS = [planner for planner in PLANNERS if planner not in GRAPHS | SAMPLERS]
 WORLDS = ["lfhh-2d-1", "lfhh-3d-1"]
 
 every_planner = pytest.mark.parametrize("planner", PLANNERS)
@@ -34,6 +36,8 @@ def brief(planner: str, **parameters: Any) -> dict[str, Any]:
     """Parameters with which a planner takes milliseconds."""
     if planner in GRAPHS:
         return {"spacing_m": 1_000.0}
+    if planner in SAMPLERS:
+        return {"max_evaluations": 600, "objective": "time"}
     return {"generations": 6, "population": 60, "selected": 30, "bins": 30, **parameters}
 
 
@@ -74,7 +78,7 @@ def test_a_plan_is_what_it_says(planner: str, name: str, cost: str) -> None:
     assert np.all((plan.waypoints >= low) & (plan.waypoints <= high))
     # To the last bit what path_cost says of it.
     assert plan.cost == auvgym.path_cost(ocean, plan.waypoints, cost)
-    if planner not in GRAPHS:
+    if planner in POPULATIONS:
         assert plan.feasible == bool(plan.cost["feasible"])
     assert plan.evaluations > 0
     assert plan.window is None
@@ -481,12 +485,14 @@ def test_a_window_grows_until_there_is_a_way() -> None:
 def test_every_planner_replans_and_keeps_its_budget(planner: str) -> None:
     ocean = World("lfhh-2d-1")
     path = np.linspace(ocean.start, ocean.goal, 40)
-    parameters = brief(planner) if planner in GRAPHS else exhausting(333)
+    parameters = exhausting(333) if planner in POPULATIONS else brief(planner)
     plan = auvgym.replan(ocean, path, path[3], planner, seed=2, window=10, **parameters)
     assert np.array_equal(plan.waypoints[0], path[3])
     assert np.array_equal(plan.waypoints[-1], ocean.goal)
-    if planner not in GRAPHS:
+    if planner in POPULATIONS:
         assert plan.evaluations == 333  # over all attempts
+    if planner in SAMPLERS:
+        assert plan.evaluations <= 600
 
 
 @every_world

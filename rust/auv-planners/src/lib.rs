@@ -18,6 +18,7 @@ pub mod population;
 pub mod protocol;
 pub mod registry;
 pub mod replanning;
+pub mod sampling;
 pub mod search;
 pub mod sections;
 #[cfg(test)]

@@ -9,7 +9,7 @@ use crate::error::PlanError;
 use crate::parameters::{Common, Parameters, parse, parse_common};
 use crate::plan::Plan;
 use crate::sections::SectionProblem;
-use crate::{differential_evolution, gaussian, grid, histogram, optimum, particle_swarm};
+use crate::{differential_evolution, gaussian, grid, histogram, optimum, particle_swarm, sampling};
 
 /// A question to a planner.
 #[derive(Clone, Copy)]
@@ -78,7 +78,10 @@ struct Entry {
 
 /// All planners.
 const PLANNERS: &[Entry] = &[
+    Entry { name: "dijkstra", run: grid::plan_dijkstra },
     Entry { name: "astar", run: grid::plan_astar },
+    Entry { name: "rrt-star", run: sampling::plan_rrt_star },
+    Entry { name: "prm-star", run: sampling::plan_prm_star },
     Entry { name: "lfhh", run: histogram::plan_lfhh },
     Entry { name: "fhh", run: histogram::plan_fhh },
     Entry { name: "fhh-lts", run: histogram::plan_fhh_lts },

@@ -47,3 +47,16 @@ pub fn other_solids_world() -> World {
     }));
     World::new(scenario, 0, 0).unwrap()
 }
+
+/// The first 2-D paper world with a wall right across it between start and goal.
+pub fn walled_world() -> World {
+    let mut scenario = paper_scenario("lfhh-2d-1");
+    scenario.change = None;
+    scenario.obstacles.push(Obstacle::Polygon(Polygon {
+        vertices_m: vec![[-1e3, 20e3], [21e3, 20e3], [21e3, 21e3], [-1e3, 21e3]],
+        top_m: -1.0,
+        bottom_m: 1.0,
+        velocity_mps: [0.0; 2],
+    }));
+    World::new(scenario, 0, 0).unwrap()
+}

@@ -1,37 +1,56 @@
-//! Planner `astar`: the fastest way over a grid, through the present map and currents.
+//! A*: from the start towards the goal, looking first at the nodes through which the goal may be reached
+//! soonest. What is left from a node is estimated as the straight line at the greatest speed over ground that
+//! the currents allow anywhere: never too much, so that the way found is as fast as Dijkstra's.
 
-use super::{Settings, plan};
-use crate::cost::path_cost;
-use crate::error::{PlanError, within};
-use crate::parameters::Parameters;
-use crate::plan::Plan;
-use crate::registry::Request;
-use crate::sections::check_place;
+use auv_world::World;
+use auv_world::math::{Vec3, distance};
 
-impl Parameters for Settings {
-    fn check(&self) -> Result<(), PlanError> {
-        within("spacing_m", self.spacing_m, 0.0, 1e9)?;
-        within("inflation_m", self.inflation_m, 0.0, 1e9)
+use super::graph::{Direction, Graph};
+use super::nodes::Grid;
+use super::path::{RINGS, Route};
+use super::search::Search;
+
+/// The fastest way over a grid; `None` if interrupted.
+pub fn route(
+    world: &World,
+    grid: &Grid,
+    start: Vec3,
+    goal: Vec3,
+    interrupted: &mut dyn FnMut() -> bool,
+) -> Option<Route> {
+    let graph = Graph::new(world, grid, goal, interrupted)?;
+    let left = |node: usize| distance(grid.place(node), goal) / graph.fastest();
+    let at_start = world.clearance(start);
+    let mut search = Search::new(grid.len());
+    let mut best: Option<(f64, usize)> = None;
+    // A wider ring is looked at only if no way leads on from the narrower ones.
+    for ring in RINGS {
+        for (node, seconds) in grid.entries(world, start, ring) {
+            if graph.may_begin(start, at_start, node) {
+                search.begin(node, seconds, left(node));
+            }
+        }
+        let settle = |node: usize, seconds: f64| {
+            if let Some(total) = graph.exit(node).map(|rest| seconds + rest) {
+                best = best.filter(|best| best.0 <= total).or(Some((total, node)));
+            }
+            best.map_or(f64::INFINITY, |best| best.0)
+        };
+        if !search.run(&graph, Direction::Forwards, left, settle, interrupted) {
+            return None;
+        }
+        if best.is_some() {
+            break;
+        }
     }
-}
-
-/// Answers a request with the path of least travel time. `feasible` says that a way was found that keeps
-/// clear of everything solid and on which the vehicle beats the current; `cost` judges the path by the
-/// request's cost like any other. `max_evaluations` does not apply: the search is exact and ends by itself.
-///
-/// # Errors
-/// [`PlanError`] naming the parameter, start or goal that is not allowed.
-pub fn plan_astar(request: &Request<'_>) -> Result<Plan, PlanError> {
-    let (common, settings) = request.parse::<Settings>()?;
-    check_place(request.world, "start", request.start)?;
-    check_place(request.world, "goal", request.goal)?;
-    let found = plan(request.world, request.start, request.goal, settings, &mut || request.control.interrupted());
-    let (waypoints, feasible, evaluations) = match &found {
-        Some(path) => (path.waypoints.clone(), path.feasible, path.evaluations),
-        None => (vec![request.start, request.goal], false, 0),
+    let Some((seconds, mut node)) = best else {
+        return Some(Route { nodes: Vec::new(), seconds: f64::INFINITY, settled: search.settled });
     };
-    let cost = path_cost(request.world, &waypoints, common.cost, &common.cost_options)?;
-    let history = vec![(evaluations, cost.total)];
-    let planner = request.planner.to_owned();
-    Ok(Plan { planner, waypoints, feasible, cost, evaluations, history, interrupted: found.is_none() })
+    let mut nodes = vec![node];
+    while search.link[node] as usize != node {
+        node = search.link[node] as usize;
+        nodes.push(node);
+    }
+    nodes.reverse();
+    Some(Route { nodes, seconds, settled: search.settled })
 }
