@@ -78,10 +78,6 @@ struct Entry {
 
 /// All planners.
 const PLANNERS: &[Entry] = &[
-    Entry { name: "dijkstra", run: grid::plan_dijkstra },
-    Entry { name: "astar", run: grid::plan_astar },
-    Entry { name: "rrt-star", run: sampling::plan_rrt_star },
-    Entry { name: "prm-star", run: sampling::plan_prm_star },
     Entry { name: "lfhh", run: histogram::plan_lfhh },
     Entry { name: "fhh", run: histogram::plan_fhh },
     Entry { name: "fhh-lts", run: histogram::plan_fhh_lts },
@@ -90,6 +86,10 @@ const PLANNERS: &[Entry] = &[
     Entry { name: "ade", run: differential_evolution::plan_ade },
     Entry { name: "rwde", run: differential_evolution::plan_rwde },
     Entry { name: "pso", run: particle_swarm::plan_pso },
+    Entry { name: "rrt-star", run: sampling::plan_rrt_star },
+    Entry { name: "prm-star", run: sampling::plan_prm_star },
+    Entry { name: "astar", run: grid::plan_astar },
+    Entry { name: "dijkstra", run: grid::plan_dijkstra },
     Entry { name: "section-optimum", run: optimum::plan_section_optimum },
 ];
 
