@@ -23,8 +23,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for name in SCENARIOS {
         let scenario = Scenario::load(&folder.join(format!("{name}.toml")))?;
         for mission in 0..scenario.missions.len() {
-            let flown = run(&scenario, mission, "lfhh", 0, "", Settings::default(), &Control::none())?;
             let mut world = World::new(scenario.clone(), 0, mission)?;
+            let flown = run(&world, "lfhh", 0, "", Settings::default(), &Control::none())?;
             for (number, phase) in flown.phases.iter().enumerate() {
                 if number > 0 {
                     world.apply_change(phase.vehicle_m);

@@ -15,9 +15,9 @@ pub struct Plan {
     pub feasible: bool,
     /// The cost of `waypoints`, to the last bit what [`crate::path_cost`] says of them.
     pub cost: CostTerms,
-    /// Paths evaluated (nodes settled, for planners on graphs).
+    /// Paths evaluated (planners on a grid: nodes settled; sampling planners: motions tested).
     pub evaluations: u64,
-    /// Best total cost after so many evaluations, once for each generation.
+    /// Best total cost after so many evaluations: once for each generation, or path found.
     pub history: Vec<(u64, f64)>,
     /// Whether the caller interrupted it.
     pub interrupted: bool,

@@ -50,7 +50,7 @@ impl Default for RrtStar {
 impl Parameters for RrtStar {
     fn check(&self) -> Result<(), PlanError> {
         within("margin_m", self.margin_m, 0.0, 1e9)?;
-        within("radius_factor", self.radius_factor, 0.01, 100.0)?;
+        within("radius_factor", self.radius_factor, 0.01, 10.0)?;
         within("step_m", self.step_m, 0.0, 1e9)?;
         within("goal_bias", self.goal_bias, 0.0, 1.0)
     }
@@ -81,7 +81,7 @@ impl Default for PrmStar {
 impl Parameters for PrmStar {
     fn check(&self) -> Result<(), PlanError> {
         within("margin_m", self.margin_m, 0.0, 1e9)?;
-        within("radius_factor", self.radius_factor, 0.01, 100.0)?;
+        within("radius_factor", self.radius_factor, 0.01, 10.0)?;
         within("samples", self.samples, 1, super::prm_star::MOST_NODES)
     }
 }
