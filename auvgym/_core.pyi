@@ -201,7 +201,7 @@ class TimeField:
         world: World,
         goal: _Point | None = None,
         spacing_m: float | None = None,
-        inflation_m: float = 300.0,
+        inflation_m: float | None = None,
     ) -> TimeField: ...
     @property
     def evaluations(self) -> int: ...

@@ -8,6 +8,7 @@ import gymnasium
 ENVIRONMENTS = {
     "AUVDynamic2D-v0": "auvgym.envs:AUVDynamic2DEnv",
     "AUVDynamic3D-v0": "auvgym.envs:AUVDynamic3DEnv",
+    "AUVStatic3D-v0": "auvgym.envs:AUVStatic3DEnv",
 }
 
 

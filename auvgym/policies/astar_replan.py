@@ -18,7 +18,8 @@ class AstarReplanPolicy(ScriptedPolicy):
     Args:
         seed: unused; every policy takes one.
         spacing_m: the grid's spacing, m; None lets the engine choose it for the world.
-        inflation_m: how far the grid keeps from everything solid, m.
+        inflation_m: how far the grid keeps from everything solid, m; None takes the scenario's
+            margin of waypoints.
     """
 
     name = "astar-replan"
@@ -26,7 +27,7 @@ class AstarReplanPolicy(ScriptedPolicy):
     description = "time-optimal on the present map, re-planned at each change"
 
     def __init__(
-        self, seed: int = 0, spacing_m: float | None = None, inflation_m: float = 300.0
+        self, seed: int = 0, spacing_m: float | None = None, inflation_m: float | None = None
     ) -> None:
         super().__init__(seed)
         self.spacing_m = spacing_m

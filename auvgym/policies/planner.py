@@ -69,7 +69,7 @@ class PlannerPolicy(ScriptedPolicy):
         if self._next == len(self._waypoints) - 1:
             return waypoint
         leading = waypoint - self._waypoints[self._next - 1]
-        beyond: Vector = self._capture_m * leading / max(float(np.linalg.norm(leading)), 1.0)
+        beyond: Vector = self._capture_m * leading / max(float(np.linalg.norm(leading)), 1e-9)
         return waypoint + beyond
 
     def _replan(self, position: Vector) -> None:

@@ -17,8 +17,9 @@ class SonarRulePolicy(ScriptedPolicy):
 
     Args:
         seed: unused; every policy takes one.
-        tube_radius_m: how far returns must stay from the tube's axis, m.
-        tube_length_m: how far ahead the tube reaches, m.
+        tube_radius_m: how far returns must stay from the tube's axis, m; None takes 0.225 of the
+            scenario's reach.
+        tube_length_m: how far ahead the tube reaches, m; None takes the reach.
     """
 
     name = "sonar-rule"
@@ -26,7 +27,10 @@ class SonarRulePolicy(ScriptedPolicy):
     description = "reactive: the free sonar direction nearest to the goal's"
 
     def __init__(
-        self, seed: int = 0, tube_radius_m: float = 450.0, tube_length_m: float = 2000.0
+        self,
+        seed: int = 0,
+        tube_radius_m: float | None = None,
+        tube_length_m: float | None = None,
     ) -> None:
         super().__init__(seed)
         self.tube_radius_m = tube_radius_m
@@ -39,6 +43,9 @@ class SonarRulePolicy(ScriptedPolicy):
         self._directions = np.asarray(self.env.sonar_directions, dtype=np.float64)
         episode = self.env.world.scenario.to_dict()["episode"]
         self._range_m = float(episode["sonar_range_m"])
+        reach_m = float(episode["reach_m"])
+        self._radius_m = 0.225 * reach_m if self.tube_radius_m is None else self.tube_radius_m
+        self._length_m = reach_m if self.tube_length_m is None else self.tube_length_m
         self._between = self._directions @ self._directions.T
 
     def act(self, observation: Observation, info: dict[str, Any]) -> Action:
@@ -49,7 +56,7 @@ class SonarRulePolicy(ScriptedPolicy):
         frame = goal_aligned_frame(to_goal)
         goal_direction = frame @ to_goal / max(distance_m, 1e-9)
         ranges_m = (1.0 - observation[self._sonar].astype(np.float64)) * self._range_m
-        ahead_m = min(self.tube_length_m, distance_m)
+        ahead_m = min(self._length_m, distance_m)
         direction, free_m = self._choose(ranges_m, goal_direction, ahead_m)
         return self.steer_to(position + free_m * (direction @ frame))
 
@@ -64,7 +71,7 @@ class SonarRulePolicy(ScriptedPolicy):
         across_m = np.sqrt(np.maximum(1.0 - cosines**2, 0.0)) * ranges_m
         returned = ranges_m < 0.999 * self._range_m
         blocked = returned & (along_m > 0.0) & (along_m < ahead_m)
-        free = ~np.any(blocked & (across_m < self.tube_radius_m), axis=1)
+        free = ~np.any(blocked & (across_m < self._radius_m), axis=1)
         if free[0]:
             return goal_direction, ahead_m
         if free.any():

@@ -12,8 +12,8 @@ use crate::points;
 use crate::world::World;
 
 /// Grid settings from Python's arguments.
-pub fn settings(spacing_m: Option<f64>, inflation_m: f64) -> PyResult<grid::Settings> {
-    for (name, value) in [("spacing_m", spacing_m.unwrap_or(1.0)), ("inflation_m", inflation_m)] {
+pub fn settings(spacing_m: Option<f64>, inflation_m: Option<f64>) -> PyResult<grid::Settings> {
+    for (name, value) in [("spacing_m", spacing_m.unwrap_or(1.0)), ("inflation_m", inflation_m.unwrap_or(0.0))] {
         if !(value.is_finite() && value >= 0.0) {
             return Err(PlanningError::new_err(format!("{name} = {value}: must be finite and not negative")));
         }
@@ -28,13 +28,13 @@ pub struct TimeField(grid::TimeField);
 #[pymethods]
 impl TimeField {
     #[new]
-    #[pyo3(signature = (world, goal=None, spacing_m=None, inflation_m=300.0))]
+    #[pyo3(signature = (world, goal=None, spacing_m=None, inflation_m=None))]
     fn new(
         py: Python<'_>,
         world: &World,
         goal: Option<Vec3>,
         spacing_m: Option<f64>,
-        inflation_m: f64,
+        inflation_m: Option<f64>,
     ) -> PyResult<Self> {
         let settings = settings(spacing_m, inflation_m)?;
         let goal = points::finite("goal", goal.unwrap_or(world.0.mission().goal_m))?;

@@ -33,7 +33,7 @@ impl Grid {
             count => size[axis] / (count - 1) as f64,
         });
         let speed = world.scenario().vehicle.speed_mps;
-        Self { origin: domain.min_m, spacing, counts, speed, inflation: settings.inflation_m }
+        Self { origin: domain.min_m, spacing, counts, speed, inflation: settings.inflation_in(world) }
     }
 
     /// Number of nodes.

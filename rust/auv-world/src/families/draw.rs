@@ -191,7 +191,7 @@ impl<'a> Draw<'a> {
 
     fn obstacles(&mut self, mission: &Mission) -> Result<Vec<Obstacle>, WorldError> {
         let flat = self.layout.dimensions == 2;
-        let count = self.parameters.obstacles.unwrap_or(self.layout.obstacles);
+        let count = self.parameters.obstacles.unwrap_or(self.layout.obstacles[self.parameters.difficulty as usize]);
         let speed = self.parameters.obstacle_speed_mps.unwrap_or(0.0);
         let mut obstacles = Vec::with_capacity(count);
         let mut tries = 0;

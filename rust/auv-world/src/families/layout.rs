@@ -16,8 +16,8 @@ pub struct Layout {
     pub speed_mps: f64,
     /// Its fastest turn (degrees a second).
     pub yaw_rate_deg: f64,
-    /// Number of discs or spheres.
-    pub obstacles: usize,
+    /// Number of discs or spheres at each difficulty: easy, normal, hard.
+    pub obstacles: [usize; 3],
     /// Their least and greatest radius.
     pub radius: [f64; 2],
     /// Number of peaks on the sea floor.
@@ -51,7 +51,7 @@ pub const LAYOUTS: [Layout; 3] = [
         unit_m: 1000.0,
         speed_mps: 2.0,
         yaw_rate_deg: 3.0,
-        obstacles: 22,
+        obstacles: [22; 3],
         radius: [0.8, 1.6],
         peaks: 0,
         peak_height: [0.0, 0.0],
@@ -66,7 +66,7 @@ pub const LAYOUTS: [Layout; 3] = [
         unit_m: 1000.0,
         speed_mps: 2.0,
         yaw_rate_deg: 3.0,
-        obstacles: 70,
+        obstacles: [70; 3],
         radius: [1.5, 3.0],
         peaks: 12,
         peak_height: [6.0, 15.0],
@@ -82,7 +82,7 @@ pub const LAYOUTS: [Layout; 3] = [
         speed_mps: 0.5,
         // A small vehicle that hovers: it turns within the capture radius.
         yaw_rate_deg: 180.0,
-        obstacles: 60,
+        obstacles: [60, 120, 200],
         radius: [1.0, 2.0],
         peaks: 5,
         peak_height: [4.0, 12.0],
@@ -110,12 +110,13 @@ fn lfhh(variant: Variant, difficulty: Difficulty, time_factors: [f64; 2]) -> Cal
     Calibration { current_ratio, time_factor }
 }
 
-/// In still water only the time limit makes a tank hard; the current ratio is for vortices that are asked for.
+/// In still water the spheres and the time limit make a tank hard, calibrated alike; the current ratio is for
+/// vortices that are asked for.
 fn afhh(difficulty: Difficulty) -> Calibration {
     let (current_ratio, time_factor) = match difficulty {
         Difficulty::Easy => (0.2, 1.5),
-        Difficulty::Normal => (0.4, 1.25),
-        Difficulty::Hard => (0.9, 1.15),
+        Difficulty::Normal => (0.4, 1.15),
+        Difficulty::Hard => (0.9, 1.1),
     };
     Calibration { current_ratio, time_factor }
 }

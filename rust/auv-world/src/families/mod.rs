@@ -53,7 +53,7 @@ pub struct Parameters {
     pub difficulty: Difficulty,
     /// Whose distributions.
     pub variant: Variant,
-    /// Number of discs (lfhh-2d 22) or spheres (lfhh-3d 70, afhh 60).
+    /// Number of discs (lfhh-2d 22) or spheres (lfhh-3d 70; afhh 60, 120, 200 by difficulty).
     pub obstacles: Option<usize>,
     /// Number of vortices (6, afhh 0).
     pub vortices: Option<usize>,
