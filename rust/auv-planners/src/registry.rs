@@ -9,7 +9,7 @@ use crate::error::PlanError;
 use crate::parameters::{Common, Parameters, parse, parse_common};
 use crate::plan::Plan;
 use crate::sections::SectionProblem;
-use crate::{differential_evolution, gaussian, grid, histogram, particle_swarm};
+use crate::{differential_evolution, fluid, gaussian, grid, histogram, particle_swarm};
 
 /// A question to a planner.
 #[derive(Clone, Copy)]
@@ -79,6 +79,7 @@ struct Entry {
 /// All planners.
 const PLANNERS: &[Entry] = &[
     Entry { name: "astar", run: grid::plan_astar },
+    Entry { name: "iifds", run: fluid::plan_iifds },
     Entry { name: "lfhh", run: histogram::plan_lfhh },
     Entry { name: "fhh", run: histogram::plan_fhh },
     Entry { name: "fhh-lts", run: histogram::plan_fhh_lts },
