@@ -80,6 +80,9 @@ struct Entry {
 const PLANNERS: &[Entry] = &[
     Entry { name: "astar", run: grid::plan_astar },
     Entry { name: "iifds", run: fluid::plan_iifds },
+    Entry { name: "iifds-ga", run: fluid::tuning::plan_iifds_ga },
+    Entry { name: "iifds-iga", run: fluid::tuning::plan_iifds_iga },
+    Entry { name: "iifds-de", run: fluid::tuning::plan_iifds_de },
     Entry { name: "lfhh", run: histogram::plan_lfhh },
     Entry { name: "fhh", run: histogram::plan_fhh },
     Entry { name: "fhh-lts", run: histogram::plan_fhh_lts },

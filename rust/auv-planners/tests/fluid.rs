@@ -13,7 +13,7 @@ use auv_world::scenario::{
 use auv_world::{Scenario, World};
 use proptest::prelude::*;
 
-const PLANNERS: [&str; 1] = ["iifds"];
+const PLANNERS: [&str; 4] = ["iifds", "iifds-ga", "iifds-iga", "iifds-de"];
 const WORLDS: [&str; 6] =
     ["lfhh-2d-1", "lfhh-3d-1", "iifds-static-dense", "iifds-astar", "iifds-threats3", "iifds-complex"];
 

@@ -10,6 +10,7 @@ mod settings;
 mod shape;
 mod superquadric;
 mod trace;
+pub mod tuning;
 mod union;
 
 pub use field::{Body, Coefficients, Field, Modulation};
