@@ -9,6 +9,7 @@ mod obstacles;
 mod settings;
 mod shape;
 mod superquadric;
+pub mod threats;
 mod trace;
 pub mod tuning;
 mod union;

@@ -2,8 +2,7 @@
 
 use auv_world::World;
 use auv_world::math::Vec3;
-use auv_world::obstacles::Solid;
-use auv_world::scenario::Superquadric as Numbers;
+use auv_world::scenario::Obstacle;
 use auv_world::seabed::Floor;
 use libm::pow;
 
@@ -28,53 +27,50 @@ pub enum Class {
     Seabed,
 }
 
-/// The bodies of a world as it is now, `margin` (m) larger than they are; `velocities` of obstacles are
-/// not looked at.
+/// The bodies of a world as it is now, `margin` (m) larger than they are: first its obstacles in order,
+/// with their velocities, then the sea floor. Obstacles that miss the plane of a 2-D world are left out.
 pub fn bodies(world: &World, margin: f64, coefficients: impl Fn(Class) -> Coefficients) -> Vec<Body> {
     let flat = world.scenario().dimensions == 2;
     let plane = flat.then_some(world.scenario().domain.min_m[2]);
     let mut bodies = Vec::new();
-    let mut add = |class: Class, shape: Option<Shape>| {
-        bodies.extend(shape.map(|shape| Body::new(shape, coefficients(class))));
-    };
-    for i in 0..world.spheres().len() {
-        let (centre, radius) = world.spheres().get(i);
-        add(Class::Sphere, superquadric(plane, centre, [radius + margin; 3], [2.0; 3]));
-    }
-    for i in 0..world.discs().len() {
-        let ([x, y], radius) = world.discs().get(i);
-        let axes = [radius + margin, radius + margin, f64::INFINITY];
-        add(Class::Disc, superquadric(None, [x, y, 0.0], axes, [2.0; 3]));
-    }
-    for solid in world.solids() {
-        match solid {
-            Solid::Superquadric(Numbers { position_m, semi_axes_m, exponents, .. }) => {
-                let axes = semi_axes_m.map(|a| a + margin);
-                add(Class::Superquadric, superquadric(plane, *position_m, axes, *exponents));
+    let mut solids = world.solids().iter();
+    for (i, obstacle) in world.scenario().obstacles.iter().enumerate() {
+        let position = world.obstacle_position(i);
+        let solid = match obstacle {
+            Obstacle::Sphere(_) | Obstacle::Disc(_) => None,
+            _ => solids.next(),
+        };
+        let measured = |scale: f64| {
+            let source = solid?.clone();
+            Some(Shape::Solid(Distance { source, scale, margin, flat }))
+        };
+        let (class, shape) = match obstacle {
+            Obstacle::Sphere(sphere) => {
+                let axes = [sphere.radius_m + margin; 3];
+                (Class::Sphere, superquadric(plane, position, axes, [2.0; 3]))
             }
-            Solid::Cylinder(cylinder) => {
-                add(Class::Cylinder, Some(by_distance(solid, cylinder.radius_m, margin, flat)));
+            Obstacle::Disc(disc) => {
+                let axes = [disc.radius_m + margin, disc.radius_m + margin, f64::INFINITY];
+                (Class::Disc, superquadric(None, position, axes, [2.0; 3]))
             }
-            Solid::Polygon(prism) => {
-                // As large as the farthest corner from the mean of the corners.
-                let corners = || prism.vertices();
-                let count = corners().count().max(1) as f64;
-                let centre = [0, 1].map(|axis| corners().map(|corner| corner[axis]).sum::<f64>() / count);
-                let distance2 = |c: [f64; 2]| (c[0] - centre[0]).powi(2) + (c[1] - centre[1]).powi(2);
-                let scale = corners().map(distance2).fold(0.0, f64::max).sqrt();
-                add(Class::Polygon, Some(by_distance(solid, scale, margin, flat)));
+            Obstacle::Superquadric(shape) => {
+                let axes = shape.semi_axes_m.map(|a| a + margin);
+                (Class::Superquadric, superquadric(plane, position, axes, shape.exponents))
             }
-        }
+            Obstacle::Cylinder(cylinder) => (Class::Cylinder, measured(cylinder.radius_m)),
+            Obstacle::Polygon(_) => (Class::Polygon, measured(obstacle.extent_m())),
+        };
+        bodies.extend(shape.map(|shape| {
+            let mut body = Body::new(shape, coefficients(class));
+            body.velocity = world.obstacle_velocity(i);
+            body
+        }));
     }
     if matches!(world.floor(), Floor::Peaks(_) | Floor::Gridded(_)) {
         let shape = Distance { source: Box::new(world.clone()), scale: floor_scale(world), margin, flat };
-        add(Class::Seabed, Some(Shape::Floor(shape)));
+        bodies.push(Body::new(Shape::Floor(shape), coefficients(Class::Seabed)));
     }
     bodies
-}
-
-fn by_distance(solid: &Solid, scale: f64, margin: f64, flat: bool) -> Shape {
-    Shape::Solid(Distance { source: solid.clone(), scale, margin, flat })
 }
 
 /// A tenth of the box's depth; in 2-D a twentieth of its shorter side.
