@@ -1,14 +1,10 @@
-//! Families of scenarios: (family, parameters, seed) -> Scenario.
-//!
-//! `lfhh-2d` and `lfhh-3d` draw worlds like those of the LFHH paper: a sea surface with discs, a box with
+//! `lfhh-2d` and `lfhh-3d`: worlds like those of the LFHH paper, a sea surface with discs or a box with
 //! spheres over peaks; vortices; a map that changes every 6 km travelled. The `debiased` variant, the
 //! default, draws everything evenly over the box and the vortices' senses at random; the `paper` variant
 //! keeps the papers' distributions, whose equal-signed vortices round x = 13.5 km make the east side
 //! flow to the goal.
 
-use serde::{Deserialize, Serialize};
-
-use crate::World;
+use super::{Difficulty, Parameters, Variant, few, not_negative};
 use crate::currents::{RING_SPEED, VortexField, scale_to_peak};
 use crate::error::WorldError;
 use crate::math::{Vec2, Vec3, distance};
@@ -19,9 +15,6 @@ use crate::scenario::{
 };
 use crate::seabed::PeakFloor;
 
-/// The families there are.
-pub const FAMILIES: [&str; 2] = ["lfhh-2d", "lfhh-3d"];
-
 const KM: f64 = 1000.0;
 const WIDTH: f64 = 20.0 * KM;
 const LENGTH: f64 = 40.0 * KM;
@@ -29,62 +22,6 @@ const DEPTH: f64 = 20.0 * KM;
 /// Start and goal keep this above the sea floor, and obstacles keep it from start, goal and vehicle (m).
 const MARGIN: f64 = 0.9 * KM;
 const CORE_RADIUS: f64 = 1.2 * KM;
-
-/// How hard a world is: the time limit and the currents make it so, not the number of obstacles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Difficulty {
-    /// Weak currents.
-    Easy,
-    /// Currents that matter.
-    #[default]
-    Normal,
-    /// Currents nearly as fast as the vehicle, or faster.
-    Hard,
-}
-
-/// Whose distributions are drawn from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Variant {
-    /// Everything even over the box, vortices turning either way.
-    #[default]
-    Debiased,
-    /// The papers' distributions.
-    Paper,
-}
-
-/// Parameters of the LFHH families; what is left out follows from difficulty and variant.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Parameters {
-    /// How hard.
-    pub difficulty: Difficulty,
-    /// Whose distributions.
-    pub variant: Variant,
-    /// Number of discs (22) or spheres (70).
-    pub obstacles: Option<usize>,
-    /// Number of vortices (6).
-    pub vortices: Option<usize>,
-    /// Number of peaks (12), 3-D only.
-    pub peaks: Option<usize>,
-    /// f: the fastest summed current of every map over the vehicle's speed, sampled on the vortices'
-    /// rings of greatest speed.
-    pub current_ratio: Option<f64>,
-    /// Instead of `current_ratio`: the ring speed of one vortex over the vehicle's speed. The summed
-    /// field of equal-signed vortices is about twice as fast.
-    pub ring_ratio: Option<f64>,
-    /// Time limit over still-water straight-line time.
-    pub time_factor: Option<f64>,
-    /// Vehicle speed through water (m/s), 2.
-    pub vehicle_speed_mps: Option<f64>,
-    /// Path length between map changes (m), 6000; 0 = the map never changes.
-    pub change_every_m: Option<f64>,
-    /// Speed of every obstacle between changes (m/s), 0.
-    pub obstacle_speed_mps: Option<f64>,
-    /// Speed of every vortex centre between changes (m/s), 0.
-    pub vortex_drift_mps: Option<f64>,
-}
 
 /// What a difficulty stands for: current ratio (paper variant: ring ratio) and time factor, calibrated so
 /// that at `normal` the straight line succeeds in less than 20 %, the sonar rule in less than 80 % and the
@@ -103,29 +40,12 @@ fn calibration(dimensions: u8, variant: Variant, difficulty: Difficulty) -> (f64
     }
 }
 
-/// Draws a scenario of a family.
+/// Draws a scenario of 2 or 3 dimensions.
 ///
 /// # Errors
-/// [`WorldError`] for an unknown family or a parameter that is not allowed, by name.
-pub fn generate(family: &str, seed: u64, parameters: &Parameters) -> Result<Scenario, WorldError> {
-    let dimensions = match family {
-        "lfhh-2d" => 2,
-        "lfhh-3d" => 3,
-        _ => {
-            let allowed = format!("the families are {}", FAMILIES.join(", "));
-            return Err(WorldError::parameter("family", format!("\"{family}\""), allowed));
-        }
-    };
+/// [`WorldError`] for a parameter that is not allowed, by name.
+pub(super) fn draw(family: &str, dimensions: u8, seed: u64, parameters: &Parameters) -> Result<Scenario, WorldError> {
     Draw::new(dimensions, seed, parameters)?.scenario(family, seed)
-}
-
-/// The world of a drawn scenario, for episodes by the thousand: what a family draws is known to be allowed
-/// (a test holds that), so it is not checked again.
-///
-/// # Errors
-/// As [`generate`].
-pub fn world(family: &str, seed: u64, parameters: &Parameters) -> Result<World, WorldError> {
-    generate(family, seed, parameters).map(|scenario| World::trusted(scenario, seed))
 }
 
 /// One scenario being drawn.
@@ -142,16 +62,6 @@ struct Draw<'a> {
 impl<'a> Draw<'a> {
     fn new(dimensions: u8, seed: u64, parameters: &'a Parameters) -> Result<Self, WorldError> {
         let (ratio, time_factor) = calibration(dimensions, parameters.variant, parameters.difficulty);
-        let not_negative = |name: &str, value: Option<f64>, default: f64| match value {
-            Some(value) if !(value.is_finite() && value >= 0.0) => {
-                Err(WorldError::parameter(name, value, "must be a finite number, not negative"))
-            }
-            value => Ok(value.unwrap_or(default)),
-        };
-        let few = |name: &str, value: Option<usize>| match value {
-            Some(count) if count > 10_000 => Err(WorldError::parameter(name, count, "at most 10000")),
-            _ => Ok(()),
-        };
         few("obstacles", parameters.obstacles)?;
         few("vortices", parameters.vortices)?;
         few("peaks", parameters.peaks)?;
@@ -352,25 +262,8 @@ impl<'a> Draw<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn same_seed_same_scenario_and_it_is_allowed() {
-        for family in FAMILIES {
-            for (seed, difficulty) in [(1, Difficulty::Easy), (2, Difficulty::Normal), (3, Difficulty::Hard)] {
-                for variant in [Variant::Debiased, Variant::Paper] {
-                    let parameters = Parameters { difficulty, variant, ..Parameters::default() };
-                    let one = generate(family, seed, &parameters).unwrap();
-                    assert_eq!(one, generate(family, seed, &parameters).unwrap());
-                    one.check().unwrap();
-                    let point = [7e3, 2e4, 9e3];
-                    let trusted = world(family, seed, &parameters).unwrap();
-                    assert_eq!(trusted.clearance(point), World::new(one, seed, 0).unwrap().clearance(point));
-                }
-            }
-        }
-        let normal = Parameters::default();
-        assert_ne!(generate("lfhh-2d", 1, &normal).unwrap(), generate("lfhh-2d", 2, &normal).unwrap());
-    }
+    use crate::World;
+    use crate::families::generate;
 
     #[test]
     fn the_fastest_current_is_the_ratio() {
@@ -401,15 +294,5 @@ mod tests {
             assert!(world.spheres().clearance(vehicle) >= MARGIN - 1e-9);
             assert!(world.spheres().clearance(world.mission().goal_m) >= MARGIN - 1e-9);
         }
-    }
-
-    #[test]
-    fn unknown_and_contradictory() {
-        let normal = Parameters::default();
-        assert!(generate("lfhh", 1, &normal).unwrap_err().to_string().contains("lfhh-2d"));
-        let both = Parameters { ring_ratio: Some(0.1), current_ratio: Some(0.1), ..normal.clone() };
-        assert!(generate("lfhh-2d", 1, &both).is_err());
-        let crowded = Parameters { obstacles: Some(20_000), ..normal };
-        assert!(generate("lfhh-2d", 1, &crowded).unwrap_err().to_string().contains("obstacles"));
     }
 }

@@ -1,0 +1,147 @@
+//! Families of scenarios: (family, parameters, seed) -> Scenario.
+
+mod iifds;
+mod lfhh;
+
+use serde::{Deserialize, Serialize};
+
+use crate::World;
+use crate::error::WorldError;
+use crate::scenario::Scenario;
+
+/// The families there are.
+pub const FAMILIES: [&str; 3] = ["iifds", "lfhh-2d", "lfhh-3d"];
+
+/// How hard a world is: the time limit and the currents make it so, not the number of obstacles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Difficulty {
+    /// Weak currents.
+    Easy,
+    /// Currents that matter.
+    #[default]
+    Normal,
+    /// Currents nearly as fast as the vehicle, or faster.
+    Hard,
+}
+
+/// Whose distributions are drawn from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Variant {
+    /// Everything even over the box, vortices turning either way.
+    #[default]
+    Debiased,
+    /// The papers' distributions.
+    Paper,
+}
+
+/// Parameters of the families; what is left out follows from difficulty and variant. Not every family knows
+/// them all.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Parameters {
+    /// How hard.
+    pub difficulty: Difficulty,
+    /// Whose distributions.
+    pub variant: Variant,
+    /// Number of discs (22), spheres (70) or threats (3).
+    pub obstacles: Option<usize>,
+    /// Number of vortices (6).
+    pub vortices: Option<usize>,
+    /// Number of peaks (12), 3-D only.
+    pub peaks: Option<usize>,
+    /// f: the fastest summed current of every map over the vehicle's speed, sampled on the vortices'
+    /// rings of greatest speed.
+    pub current_ratio: Option<f64>,
+    /// Instead of `current_ratio`: the ring speed of one vortex over the vehicle's speed. The summed
+    /// field of equal-signed vortices is about twice as fast.
+    pub ring_ratio: Option<f64>,
+    /// Time limit over still-water straight-line time.
+    pub time_factor: Option<f64>,
+    /// Vehicle speed through water (m/s), 2.
+    pub vehicle_speed_mps: Option<f64>,
+    /// Path length between map changes (m), 6000; 0 = the map never changes.
+    pub change_every_m: Option<f64>,
+    /// Speed of every obstacle between changes (m/s), 0.
+    pub obstacle_speed_mps: Option<f64>,
+    /// Speed of every vortex centre between changes (m/s), 0.
+    pub vortex_drift_mps: Option<f64>,
+}
+
+/// Draws a scenario of a family.
+///
+/// # Errors
+/// [`WorldError`] for an unknown family or a parameter that is not allowed, by name.
+pub fn generate(family: &str, seed: u64, parameters: &Parameters) -> Result<Scenario, WorldError> {
+    match family {
+        "iifds" => iifds::draw(seed, parameters),
+        "lfhh-2d" => lfhh::draw(family, 2, seed, parameters),
+        "lfhh-3d" => lfhh::draw(family, 3, seed, parameters),
+        _ => {
+            let allowed = format!("the families are {}", FAMILIES.join(", "));
+            Err(WorldError::parameter("family", format!("\"{family}\""), allowed))
+        }
+    }
+}
+
+/// The world of a drawn scenario, for episodes by the thousand: what a family draws is known to be allowed
+/// (a test holds that), so it is not checked again.
+///
+/// # Errors
+/// As [`generate`].
+pub fn world(family: &str, seed: u64, parameters: &Parameters) -> Result<World, WorldError> {
+    generate(family, seed, parameters).map(|scenario| World::trusted(scenario, seed))
+}
+
+/// A number that may be left out.
+fn not_negative(name: &str, value: Option<f64>, default: f64) -> Result<f64, WorldError> {
+    match value {
+        Some(value) if !(value.is_finite() && value >= 0.0) => {
+            Err(WorldError::parameter(name, value, "must be a finite number, not negative"))
+        }
+        value => Ok(value.unwrap_or(default)),
+    }
+}
+
+/// A count that may be left out.
+fn few(name: &str, value: Option<usize>) -> Result<(), WorldError> {
+    match value {
+        Some(count) if count > 10_000 => Err(WorldError::parameter(name, count, "at most 10000")),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn same_seed_same_scenario_and_it_is_allowed() {
+        for family in FAMILIES {
+            for (seed, difficulty) in [(1, Difficulty::Easy), (2, Difficulty::Normal), (3, Difficulty::Hard)] {
+                for variant in [Variant::Debiased, Variant::Paper] {
+                    let parameters = Parameters { difficulty, variant, ..Parameters::default() };
+                    let one = generate(family, seed, &parameters).unwrap();
+                    assert_eq!(one, generate(family, seed, &parameters).unwrap());
+                    one.check().unwrap();
+                    let point = [7e3, 2e4, 9e3];
+                    let trusted = world(family, seed, &parameters).unwrap();
+                    assert_eq!(trusted.clearance(point), World::new(one, seed, 0).unwrap().clearance(point));
+                }
+            }
+        }
+        let normal = Parameters::default();
+        assert_ne!(generate("lfhh-2d", 1, &normal).unwrap(), generate("lfhh-2d", 2, &normal).unwrap());
+    }
+
+    #[test]
+    fn unknown_and_contradictory() {
+        let normal = Parameters::default();
+        assert!(generate("lfhh", 1, &normal).unwrap_err().to_string().contains("lfhh-2d"));
+        let both = Parameters { ring_ratio: Some(0.1), current_ratio: Some(0.1), ..normal.clone() };
+        assert!(generate("lfhh-2d", 1, &both).is_err());
+        let crowded = Parameters { obstacles: Some(20_000), ..normal };
+        assert!(generate("lfhh-2d", 1, &crowded).unwrap_err().to_string().contains("obstacles"));
+    }
+}
