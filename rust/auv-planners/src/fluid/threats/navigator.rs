@@ -60,7 +60,7 @@ impl Default for Rules {
             sigma: 1.0,
             share: 0.3,
             side: Side::Reverse,
-            margin_m: 0.0,
+            margin_m: 300.0,
             horizon_s: 30.0,
             ignore_receding: true,
             barrier_per_s: 0.002,
