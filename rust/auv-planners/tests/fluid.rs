@@ -4,6 +4,8 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use auv_planners::fluid::Flow;
+use auv_planners::fluid::threats::{Navigator, Rules};
 use auv_planners::{Control, Cost, CostOptions, Plan, path_cost, plan};
 use auv_world::families::{Parameters, generate};
 use auv_world::math::{Vec3, add_scaled, sub};
@@ -244,6 +246,72 @@ fn interruption_gives_the_best_so_far() {
             check(&world, &found, [start, goal], Cost::Lfhh, &CostOptions::default());
         }
     }
+}
+
+/// Clearances (km) from the threats over a whole way among them, for the coefficients of an implementation
+/// of its own: without current nor barrier, threats seen exactly every 6 s, the sphere 30 s ahead.
+#[test]
+fn clearances_from_threats_hold() {
+    for (name, rho, sigma, share, expected) in [
+        ("iifds-threat1", 1.0, 1.0, 0.0, 0.912),
+        ("iifds-threat1", 1.2, 1.0, 0.2, 0.979),
+        ("iifds-threat1", 1.5, 1.2, 0.3, 1.394),
+        ("iifds-threat1", 1.0, 1.5, 0.5, 1.540),
+        ("iifds-threats3", 1.0, 1.0, 0.0, 0.209),
+        ("iifds-threats3", 1.2, 1.0, 0.2, 0.261),
+        ("iifds-threats3", 1.5, 1.2, 0.3, 0.432),
+        ("iifds-threats3", 1.0, 1.5, 0.5, 0.452),
+        ("iifds-threats3", 1.5, 1.5, 0.1, 0.366),
+    ] {
+        let rules =
+            Rules { rho, sigma, share, margin_m: 0.0, ignore_receding: false, barrier_per_s: 0.0, ..Rules::default() };
+        let (arrived, found) = fly(name, 1.0, rules);
+        assert!(arrived && (found / 1e3 - expected).abs() < 0.03, "{name} {rho} {sigma} {share}: {found} {expected}");
+    }
+}
+
+/// The default rules on all ways among threats, with the coefficients above.
+#[test]
+fn the_default_rules_are_never_hit() {
+    for (name, lambda) in
+        [("iifds-threat1", 1.0), ("iifds-threats3", 1.0), ("iifds-complex", 0.6), ("iifds-complex", 1.0)]
+    {
+        for (rho, sigma, share) in [(1.0, 1.0, 0.0), (1.2, 1.0, 0.2), (1.5, 1.2, 0.3), (1.0, 1.5, 0.5), (1.5, 1.5, 0.1)]
+        {
+            let (arrived, found) = fly(name, lambda, Rules { rho, sigma, share, ..Rules::default() });
+            assert!(arrived && found > 0.0, "{name} {lambda} {rho} {sigma} {share}: {found}");
+        }
+    }
+}
+
+/// Whether a vehicle that is led among the moving obstacles of a world arrives, and its least clearance (m).
+fn fly(name: &str, lambda: f64, rules: Rules) -> (bool, f64) {
+    let mut world = world(name);
+    let [start, goal] = ends(&world);
+    let moving: Vec<usize> = (0..world.extents().len()).filter(|i| world.obstacle_velocity(*i) != [0.0; 3]).collect();
+    let radii: Vec<f64> = moving.iter().map(|i| world.extents()[*i]).collect();
+    let flow = Flow { step_m: 12.0, unit_m: Some(1e3), ..Flow::default() };
+    let mut navigator = Navigator::new(&world, [start, goal], &radii, lambda, &flow, rules);
+    let (mut here, mut least) = (start, f64::INFINITY);
+    for tick in 0..3000 {
+        let time = 6.0 * f64::from(tick);
+        for (threat, i) in moving.iter().enumerate() {
+            navigator.measure(threat, world.obstacle_position(*i), time);
+        }
+        let next = navigator.course(here, time, 6.0).waypoint;
+        for part in [0.25, 0.5, 0.75, 1.0] {
+            world.set_time(time + 6.0 * part);
+            let place = add_scaled(here, part, sub(next, here));
+            least = least.min(world.spheres().clearance(place));
+            // What is at rest is not touched, either.
+            assert!(world.solids().iter().all(|solid| solid.clearance(place) > 0.0), "{name} {place:?}");
+        }
+        here = next;
+        if here == goal {
+            return (true, least);
+        }
+    }
+    (false, least)
 }
 
 #[test]

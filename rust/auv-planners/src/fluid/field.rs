@@ -236,9 +236,9 @@ impl Field {
         std::array::from_fn(|axis| cosine * first[axis] + sine * second[axis])
     }
 
-    /// The least Gamma at a point; infinite if there is nothing.
-    pub fn least_gamma(&self, point: Vec3) -> f64 {
-        self.active().map(|body| body.shape.gamma(point)).fold(f64::INFINITY, f64::min)
+    /// Whether a point lies outside all obstacles, not on their surface.
+    pub fn is_outside(&self, point: Vec3) -> bool {
+        self.active().all(|body| body.shape.is_far(point) || body.shape.gamma(point) > 1.0)
     }
 
     /// A lower bound of the distance to the nearest surface (m), or `beyond` if that is less.
@@ -250,9 +250,10 @@ impl Field {
         self.bodies.iter().filter(|body| body.active)
     }
 
-    /// The body of the least Gamma below `level`, if any.
+    /// The body of the least Gamma below `level`, which is at most 1.02, if any.
     pub fn deepest(&self, point: Vec3, level: f64) -> Option<&Body> {
-        let gammas = self.active().map(|body| (body.shape.gamma(point), body));
+        let near = self.active().filter(|body| !body.shape.is_far(point));
+        let gammas = near.map(|body| (body.shape.gamma(point), body));
         let deepest = gammas.min_by(|a, b| a.0.total_cmp(&b.0))?;
         (deepest.0 < level).then_some(deepest.1)
     }

@@ -123,6 +123,15 @@ impl Shape {
         }
     }
 
+    /// Whether Gamma is surely more than 1.02, where that is quickly said.
+    #[inline]
+    pub fn is_far(&self, point: Vec3) -> bool {
+        match self {
+            Self::Superquadric(shape) => shape.is_far(point),
+            _ => false,
+        }
+    }
+
     /// d(P, O_k) of eq. 8-9 (m): along the ray from the centre, or the distance where there is no centre.
     #[inline]
     pub fn distance(&self, point: Vec3) -> f64 {

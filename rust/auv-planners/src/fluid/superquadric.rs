@@ -96,6 +96,15 @@ impl Superquadric {
         self.terms(self.scaled(self.offset(point))).iter().sum()
     }
 
+    /// Whether a point is so far that Gamma is surely more than 1.02, without working it out.
+    #[inline]
+    pub fn is_far(&self, point: Vec3) -> bool {
+        let offset = self.offset(point);
+        // Exponents are at least 1.
+        let reach = 1.02 * self.extent;
+        offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2] > reach * reach
+    }
+
     /// q^(e - 1).
     #[inline]
     fn power_below(&self, axis: usize, q: f64) -> f64 {
@@ -266,6 +275,7 @@ mod tests {
             prop_assert_eq!(clearance < 0.0, contact.gamma < 1.0);
             prop_assert!(clearance <= shape.ray_distance(p) + 1e-9);
             prop_assert_eq!(shape.clearance(p, 0.5), clearance.min(0.5));
+            prop_assert!(!shape.is_far(p) || contact.gamma > 1.02);
         }
     }
 }

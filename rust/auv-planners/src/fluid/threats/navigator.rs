@@ -4,7 +4,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use auv_world::World;
-use auv_world::math::{Vec3, add_scaled, dot, norm, sub};
+use auv_world::math::{Vec3, add_scaled, distance, dot, norm, sub};
 
 use super::barrier::{Ball, turned_away};
 use super::kalman::{Kalman, Noise};
@@ -14,6 +14,9 @@ use crate::fluid::settings::Flow;
 use crate::fluid::shape::Shape;
 use crate::fluid::superquadric::Superquadric;
 use crate::fluid::trace::{Steps, Walls, put_out, undisturbed};
+
+/// Places nearer to each other than this part of their size are one.
+const ROUNDING: f64 = 1e-12;
 
 /// On which side a threat is passed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,22 +142,30 @@ impl Navigator {
     pub fn course(&mut self, here: Vec3, time_s: f64, tick_s: f64) -> Course {
         let flow = undisturbed(&self.world, &self.steps, here, self.goal);
         self.place_threats(here, time_s, flow);
-        let wanted = self.walls.slide(here, self.field.velocity(here, self.goal, flow));
         let speed = self.steps.speed_mps;
+        let left = distance(here, self.goal);
+        let far = left.min(speed * tick_s).max(f64::MIN_POSITIVE);
+        // The last tick goes straight, whatever flows there.
+        let wanted = if left <= speed * tick_s {
+            sub(self.goal, here)
+        } else {
+            self.walls.slide(here, self.field.velocity(here, self.goal, flow))
+        };
         let mut direction = unit(wanted).or_else(|| unit(flow)).unwrap_or([0.0; 3]);
         if self.rules.barrier_per_s > 0.0 {
             direction = turned_away(direction, here, speed, self.rules.barrier_per_s, &self.balls);
             direction = unit(self.walls.slide(here, direction)).unwrap_or(direction);
         }
-        // No overshoot.
-        let far = (speed * tick_s).min(norm(sub(self.goal, here)).max(f64::MIN_POSITIVE));
         let mut waypoint = self.walls.clamp(add_scaled(here, far, direction));
         if self.steps.guard {
             self.field.bodies_mut()[self.still..].iter_mut().for_each(|threat| threat.active = false);
             waypoint = put_out(&self.field, &self.walls, waypoint, far);
         }
         let velocity = unit(sub(waypoint, here)).unwrap_or([0.0; 3]).map(|d| speed * d);
-        Course { velocity, waypoint: add_scaled(here, far / speed, velocity) }
+        let waypoint = add_scaled(here, far / speed, velocity);
+        // Arrived but for rounding is arrived.
+        let arrived = distance(waypoint, self.goal) <= ROUNDING * (1.0 + norm(self.goal));
+        Course { velocity, waypoint: if arrived { self.goal } else { waypoint } }
     }
 
     /// Puts the threats where they will be, and chooses the sides on which they are passed.

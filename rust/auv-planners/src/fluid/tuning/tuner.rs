@@ -139,8 +139,8 @@ impl<'a> Tuner<'a> {
     /// Whether all points of the line and the middles between them lie outside (eq. 24).
     fn is_outside(&self) -> bool {
         let middle = |pair: &[Vec3]| add_scaled(pair[0], 0.5, sub(pair[1], pair[0]));
-        self.path.iter().all(|point| self.field.least_gamma(*point) > 1.0)
-            && self.path.windows(2).all(|pair| self.field.least_gamma(middle(pair)) > 1.0)
+        self.path.iter().all(|point| self.field.is_outside(*point))
+            && self.path.windows(2).all(|pair| self.field.is_outside(middle(pair)))
     }
 
     /// Ends a generation; says whether the search is done.
