@@ -79,5 +79,15 @@ fn field(frame: &Scenario, seed: u64) -> Result<World, Failure> {
 fn touches(world: &World, plan: &Plan) -> bool {
     let line = &plan.waypoints[..plan.waypoints.len() - 1];
     line.windows(2)
-        .any(|leg| (0..8).any(|k| world.clearance(add_scaled(leg[0], 0.125 * f64::from(k), sub(leg[1], leg[0]))) < 0.0))
+        .any(|leg| (0..8).any(|k| is_solid(world, add_scaled(leg[0], 0.125 * f64::from(k), sub(leg[1], leg[0])))))
+}
+
+fn is_solid(world: &World, point: Vec3) -> bool {
+    world.scenario().obstacles.iter().any(|obstacle| {
+        let Obstacle::Superquadric(shape) = obstacle else { return false };
+        let offset = sub(point, shape.position_m);
+        let scaled: Vec3 = std::array::from_fn(|axis| (offset[axis] / shape.semi_axes_m[axis]).abs());
+        scaled.iter().all(|q| *q <= 1.0)
+            && (0..3).map(|axis| scaled[axis].powf(shape.exponents[axis])).sum::<f64>() < 1.0
+    })
 }

@@ -9,6 +9,7 @@ use auv_planners::fluid::threats::{Navigator, Rules};
 use auv_planners::{Control, Cost, CostOptions, Plan, path_cost, plan};
 use auv_world::families::{Parameters, generate};
 use auv_world::math::{Vec3, add_scaled, sub};
+use auv_world::rng::{Purpose, Stream};
 use auv_world::scenario::{
     Cylinder, Data, Domain, Flat, GriddedSeabed, Mission, Obstacle, Polygon, Seabed, Superquadric,
 };
@@ -116,6 +117,38 @@ proptest! {
         let found = ask("iifds", &world, 0, r#"{"cost_options": {"collision": "segment"}}"#);
         check(&world, &found, ends(&world), Cost::Lfhh, &CostOptions { collision: auv_planners::cost::Collision::Segment, ..CostOptions::default() });
         prop_assert!(found.feasible || found.evaluations == 6);
+    }
+}
+
+/// Twelve superquadrics that overlap; `examples/fluid_rates.rs` does this 400 times.
+#[test]
+fn dense_fields_are_passed_without_touching() {
+    let frame = Scenario { currents: Vec::new(), ..scenario("iifds-static-dense") };
+    let depth = frame.domain.max_m[2];
+    for seed in 0..20 {
+        let mut stream = Stream::new(seed, Purpose::Family, 101);
+        let mut obstacles = Vec::new();
+        while obstacles.len() < 12 {
+            let [x, y] = [9e3, 10e3].map(|side| stream.uniform(1e3, side));
+            let width = stream.uniform(0.8e3, 1.5e3);
+            let exponents = [[2.0; 3], [2.0, 2.0, 8.0], [8.0; 3], [2.0, 2.0, 1.0]][stream.below(4)];
+            if x.max(y) > 1.1 * width && (10e3 - x).max(11e3 - y) > 1.1 * width {
+                obstacles.push(Obstacle::Superquadric(Superquadric {
+                    position_m: [x, y, depth],
+                    semi_axes_m: [width, 0.9 * width, stream.uniform(1.3e3, 2.4e3)],
+                    exponents,
+                    velocity_mps: [0.0; 3],
+                }));
+            }
+        }
+        let world = World::new(Scenario { obstacles, ..frame.clone() }, seed, 0).unwrap();
+        let [rho, sigma] = [(); 2].map(|()| stream.uniform(1.0, 3.0));
+        let theta = stream.uniform(0.0, std::f64::consts::PI);
+        let parameters = format!(
+            r#"{{"rho": {rho}, "sigma": {sigma}, "theta": {theta}, "cost_options": {{"collision": "segment"}}}}"#
+        );
+        let found = ask("iifds", &world, 0, &parameters);
+        assert!(found.feasible && clearance(&world, &found.waypoints) > 0.0, "{seed}");
     }
 }
 
