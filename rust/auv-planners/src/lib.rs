@@ -7,6 +7,7 @@ pub mod control;
 pub mod cost;
 pub mod differential_evolution;
 pub mod error;
+pub mod fluid;
 pub mod gaussian;
 pub mod grid;
 pub mod histogram;

@@ -9,7 +9,7 @@ use crate::error::PlanError;
 use crate::parameters::{Common, Parameters, parse, parse_common};
 use crate::plan::Plan;
 use crate::sections::SectionProblem;
-use crate::{differential_evolution, gaussian, grid, histogram, optimum, particle_swarm, sampling};
+use crate::{differential_evolution, fluid, gaussian, grid, histogram, optimum, particle_swarm, sampling};
 
 /// A question to a planner.
 #[derive(Clone, Copy)]
@@ -90,6 +90,10 @@ const PLANNERS: &[Entry] = &[
     Entry { name: "prm-star", run: sampling::plan_prm_star },
     Entry { name: "astar", run: grid::plan_astar },
     Entry { name: "dijkstra", run: grid::plan_dijkstra },
+    Entry { name: "iifds", run: fluid::plan_iifds },
+    Entry { name: "iifds-ga", run: fluid::tuning::plan_iifds_ga },
+    Entry { name: "iifds-iga", run: fluid::tuning::plan_iifds_iga },
+    Entry { name: "iifds-de", run: fluid::tuning::plan_iifds_de },
     Entry { name: "section-optimum", run: optimum::plan_section_optimum },
 ];
 

@@ -261,6 +261,11 @@ impl World {
         &self.discs
     }
 
+    /// Cylinders, superquadrics and polygons at the present time.
+    pub fn solids(&self) -> &[Solid] {
+        &self.solids
+    }
+
     /// Whether there are obstacles other than spheres and discs.
     pub fn has_other_solids(&self) -> bool {
         !self.solids.is_empty()

@@ -23,7 +23,7 @@ struct Rates {
 }
 
 /// Three members, different from each other and from member `not`.
-fn three_others(stream: &mut Stream, size: usize, not: usize) -> [usize; 3] {
+pub(crate) fn three_others(stream: &mut Stream, size: usize, not: usize) -> [usize; 3] {
     let mut others = [not; 3];
     for k in 0..3 {
         while others[..k].contains(&others[k]) || others[k] == not {

@@ -1,6 +1,6 @@
 //! Draws one scenario of a family.
 
-use super::{Layout, Parameters, Variant};
+use super::{Layout, Parameters, Variant, few, not_negative};
 use crate::currents::{RING_SPEED, VortexField, scale_to_peak};
 use crate::error::WorldError;
 use crate::math::{Vec2, Vec3, distance};
@@ -37,16 +37,6 @@ impl<'a> Draw<'a> {
     /// [`WorldError`] naming the one that is not allowed.
     pub fn new(layout: &'a Layout, seed: u64, parameters: &'a Parameters) -> Result<Self, WorldError> {
         let calibration = (layout.calibration)(parameters.variant, parameters.difficulty);
-        let not_negative = |name: &str, value: Option<f64>, default: f64| match value {
-            Some(value) if !(value.is_finite() && value >= 0.0) => {
-                Err(WorldError::parameter(name, value, "must be a finite number, not negative"))
-            }
-            value => Ok(value.unwrap_or(default)),
-        };
-        let few = |name: &str, value: Option<usize>| match value {
-            Some(count) if count > 10_000 => Err(WorldError::parameter(name, count, "at most 10000")),
-            _ => Ok(()),
-        };
         few("obstacles", parameters.obstacles)?;
         few("vortices", parameters.vortices)?;
         few("peaks", parameters.peaks)?;

@@ -5,9 +5,10 @@
 //! default, draws everything evenly over the box and the vortices' senses at random; the `paper` variant
 //! keeps the papers' distributions, whose equal-signed vortices round x = 13.5 km make the east side
 //! flow to the goal. `afhh` draws tanks like those of the AFHH paper, a thousandth of that size: spheres
-//! over peaks in still water, and nothing ever changes.
+//! over peaks in still water, and nothing ever changes. `iifds` draws threats on courses that meet the vehicle.
 
 mod draw;
+mod iifds;
 mod layout;
 
 use serde::{Deserialize, Serialize};
@@ -19,7 +20,7 @@ use draw::Draw;
 use layout::{LAYOUTS, Layout};
 
 /// The families there are.
-pub const FAMILIES: [&str; 3] = ["lfhh-2d", "lfhh-3d", "afhh"];
+pub const FAMILIES: [&str; 4] = ["lfhh-2d", "lfhh-3d", "afhh", "iifds"];
 
 /// How hard a world is: the time limit and the currents make it so, not the number of obstacles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -45,7 +46,8 @@ pub enum Variant {
     Paper,
 }
 
-/// Parameters of the families; what is left out follows from family, difficulty and variant.
+/// Parameters of the families; what is left out follows from family, difficulty and variant. Not every
+/// family knows them all.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Parameters {
@@ -53,7 +55,8 @@ pub struct Parameters {
     pub difficulty: Difficulty,
     /// Whose distributions.
     pub variant: Variant,
-    /// Number of discs (lfhh-2d 22) or spheres (lfhh-3d 70; afhh 60, 120, 200 by difficulty).
+    /// Number of discs (lfhh-2d 22) or spheres (lfhh-3d 70; afhh 60, 120, 200 by difficulty) or threats
+    /// (iifds 3).
     pub obstacles: Option<usize>,
     /// Number of vortices (6, afhh 0).
     pub vortices: Option<usize>,
@@ -82,11 +85,32 @@ pub struct Parameters {
 /// # Errors
 /// [`WorldError`] for an unknown family or a parameter that is not allowed, by name.
 pub fn generate(family: &str, seed: u64, parameters: &Parameters) -> Result<Scenario, WorldError> {
+    if family == "iifds" {
+        return iifds::draw(seed, parameters);
+    }
     let layout = LAYOUTS.iter().find(|layout| layout.name == family).ok_or_else(|| {
         let allowed = format!("the families are {}", FAMILIES.join(", "));
         WorldError::parameter("family", format!("\"{family}\""), allowed)
     })?;
     Draw::new(layout, seed, parameters)?.scenario(seed)
+}
+
+/// A number that may be left out.
+fn not_negative(name: &str, value: Option<f64>, default: f64) -> Result<f64, WorldError> {
+    match value {
+        Some(value) if !(value.is_finite() && value >= 0.0) => {
+            Err(WorldError::parameter(name, value, "must be a finite number, not negative"))
+        }
+        value => Ok(value.unwrap_or(default)),
+    }
+}
+
+/// A count that may be left out.
+fn few(name: &str, value: Option<usize>) -> Result<(), WorldError> {
+    match value {
+        Some(count) if count > 10_000 => Err(WorldError::parameter(name, count, "at most 10000")),
+        _ => Ok(()),
+    }
 }
 
 /// The world of a drawn scenario, for episodes by the thousand: what a family draws is known to be allowed

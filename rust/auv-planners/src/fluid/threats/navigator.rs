@@ -1,0 +1,259 @@
+//! The flow as a law of motion among threats (section V): fed with measured positions, it says at each
+//! tick where to go.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use auv_world::World;
+use auv_world::math::{Vec3, add_scaled, distance, dot, norm, sub};
+
+use super::barrier::{Ball, turned_away};
+use super::kalman::{Kalman, Noise};
+use crate::fluid::field::{Body, Coefficients, Field};
+use crate::fluid::obstacles::bodies;
+use crate::fluid::settings::Flow;
+use crate::fluid::shape::Shape;
+use crate::fluid::superquadric::Superquadric;
+use crate::fluid::trace::{Steps, Walls, put_out, undisturbed};
+
+/// Places nearer to each other than this part of their size are one.
+const ROUNDING: f64 = 1e-12;
+
+/// On which side a threat is passed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Behind it: against its way across (eq. 31-32).
+    Reverse,
+    /// Before it: what eq. 32 warns of.
+    Same,
+    /// To the right.
+    Fixed,
+}
+
+/// How threats are avoided.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rules {
+    /// rho0 and sigma0 of threats.
+    pub rho: f64,
+    /// rho0 and sigma0 of threats.
+    pub sigma: f64,
+    /// s: theta is s pi / 2 to the right and pi - s pi / 2 to the left, so that 1 leads over all.
+    pub share: f64,
+    /// On which side.
+    pub side: Side,
+    /// The flow takes threats to be this much larger than they are (m).
+    pub margin_m: f64,
+    /// The flow takes threats to be where they will be then (s).
+    pub horizon_s: f64,
+    /// Whether the flow passes over threats that go away by themselves.
+    pub ignore_receding: bool,
+    /// alpha: the gap to a threat may shrink by this part of it in a second (1/s); 0: no barrier.
+    pub barrier_per_s: f64,
+    /// Whether threats turn the flow in their own frame instead.
+    pub relative: bool,
+    /// What the filter expects.
+    pub noise: Noise,
+    /// Coefficients of what does not move.
+    pub still: Coefficients,
+}
+
+impl Default for Rules {
+    fn default() -> Self {
+        Self {
+            rho: 1.0,
+            sigma: 1.0,
+            share: 0.3,
+            side: Side::Reverse,
+            margin_m: 300.0,
+            horizon_s: 30.0,
+            ignore_receding: true,
+            barrier_per_s: 0.002,
+            relative: false,
+            noise: Noise { process: 1e-6, measurement_m: 1.0, velocity_mps: 2.0 },
+            still: Coefficients { rho: 1.0, sigma: 1.0, theta: 1.0 },
+        }
+    }
+}
+
+/// Where to go.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Course {
+    /// Velocity over ground (m/s), as fast as the vehicle.
+    pub velocity: Vec3,
+    /// Where that leads by the end of the tick (m).
+    pub waypoint: Vec3,
+}
+
+/// A vehicle's way to a goal among things that move.
+#[derive(Debug, Clone)]
+pub struct Navigator {
+    world: World,
+    field: Field,
+    /// Bodies before this one are at rest; the others are the threats.
+    still: usize,
+    trackers: Vec<Option<Kalman>>,
+    radii: Vec<f64>,
+    balls: Vec<Ball>,
+    walls: Walls,
+    steps: Steps,
+    rules: Rules,
+    goal: Vec3,
+}
+
+impl Navigator {
+    /// A navigator that knows what is at rest in the world, its box and its current, and threats of the
+    /// given radii (m), but not where they are. `lambda` is that of eq. 15.
+    pub fn new(world: &World, [start, goal]: [Vec3; 2], radii: &[f64], lambda: f64, flow: &Flow, rules: Rules) -> Self {
+        let mut all: Vec<Body> = bodies(world, flow.margin_m, |_| rules.still);
+        all.retain(|body| body.velocity == [0.0; 3]);
+        let still = all.len();
+        for radius in radii {
+            let sphere = Superquadric::new([0.0; 3], [radius + rules.margin_m; 3], [2.0; 3]);
+            let mut threat = Body::new(Shape::Superquadric(sphere), rules.still);
+            threat.active = false;
+            all.push(threat);
+        }
+        let mut modulation = flow.modulation(start, goal);
+        modulation.relative = rules.relative;
+        // Threats wander: what overlaps now will not stay.
+        modulation.union_exponent = 0.0;
+        Self {
+            world: world.clone(),
+            field: Field::new(all, modulation, world.scenario().dimensions == 2),
+            still,
+            trackers: vec![None; radii.len()],
+            radii: radii.to_vec(),
+            balls: Vec::with_capacity(radii.len()),
+            walls: Walls::new(world, [start, goal]),
+            steps: flow.steps(world, lambda, start, goal),
+            rules,
+            goal,
+        }
+    }
+
+    /// Takes in where a threat was measured to be (m).
+    pub fn measure(&mut self, threat: usize, position: Vec3, time_s: f64) {
+        match &mut self.trackers[threat] {
+            Some(filter) => filter.measure(position, time_s),
+            nothing => *nothing = Some(Kalman::new(self.rules.noise, position, time_s)),
+        }
+    }
+
+    /// Where to go from here (m) in the next `tick_s` seconds. Allocates nothing.
+    pub fn course(&mut self, here: Vec3, time_s: f64, tick_s: f64) -> Course {
+        let flow = undisturbed(&self.world, &self.steps, here, self.goal);
+        self.place_threats(here, time_s, flow);
+        let speed = self.steps.speed_mps;
+        let left = distance(here, self.goal);
+        let far = left.min(speed * tick_s).max(f64::MIN_POSITIVE);
+        // The last tick goes straight, whatever flows there.
+        let wanted = if left <= speed * tick_s {
+            sub(self.goal, here)
+        } else {
+            self.walls.slide(here, self.field.velocity(here, self.goal, flow))
+        };
+        let mut direction = unit(wanted).or_else(|| unit(flow)).unwrap_or([0.0; 3]);
+        if self.rules.barrier_per_s > 0.0 {
+            direction = turned_away(direction, here, speed, self.rules.barrier_per_s, &self.balls);
+            direction = unit(self.walls.slide(here, direction)).unwrap_or(direction);
+        }
+        let mut waypoint = self.walls.clamp(add_scaled(here, far, direction));
+        if self.steps.guard {
+            self.field.bodies_mut()[self.still..].iter_mut().for_each(|threat| threat.active = false);
+            waypoint = put_out(&self.field, &self.walls, waypoint, far);
+        }
+        let velocity = unit(sub(waypoint, here)).unwrap_or([0.0; 3]).map(|d| speed * d);
+        let waypoint = add_scaled(here, far / speed, velocity);
+        // Arrived but for rounding is arrived.
+        let arrived = distance(waypoint, self.goal) <= ROUNDING * (1.0 + norm(self.goal));
+        Course { velocity, waypoint: if arrived { self.goal } else { waypoint } }
+    }
+
+    /// Puts the threats where they will be, and chooses the sides on which they are passed.
+    fn place_threats(&mut self, here: Vec3, time_s: f64, flow: Vec3) {
+        self.balls.clear();
+        let heading = unit(flow).unwrap_or([0.0; 3]);
+        let [ahead, aside, _] = sub(self.goal, here);
+        for ((body, tracker), radius) in
+            self.field.bodies_mut()[self.still..].iter_mut().zip(&self.trackers).zip(&self.radii)
+        {
+            let Some(filter) = tracker else { continue };
+            let (centre, velocity) = (filter.position(time_s), filter.velocity());
+            self.balls.push(Ball { centre, velocity, radius: *radius });
+            let closing = sub(heading.map(|h| self.steps.speed_mps * h), velocity);
+            let recedes = dot(sub(here, centre), closing) > 0.0;
+            body.active = !(self.rules.ignore_receding && recedes);
+            // v of eq. 31 points to the right of the goal's direction.
+            let rightwards = velocity[0] * aside - velocity[1] * ahead > 0.0;
+            let left = match self.rules.side {
+                Side::Reverse => rightwards,
+                Side::Same => !rightwards,
+                Side::Fixed => false,
+            };
+            let theta = self.rules.share * FRAC_PI_2;
+            let theta = if left { PI - theta } else { theta };
+            body.velocity = velocity;
+            body.set(Coefficients { rho: self.rules.rho, sigma: self.rules.sigma, theta });
+            if let Shape::Superquadric(sphere) = &mut body.shape {
+                sphere.place(filter.position(time_s + self.rules.horizon_s));
+            }
+        }
+    }
+}
+
+fn unit(vector: Vec3) -> Option<Vec3> {
+    let length = norm(vector);
+    (length > 1e-12).then(|| vector.map(|v| v / length))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing;
+
+    fn navigator(rules: Rules) -> Navigator {
+        let world = testing::paper_world("iifds-threat1", 0);
+        let (start, goal) = ([0.0, 5e3, 2e3], [10e3, 5e3, 2e3]);
+        Navigator::new(&world, [start, goal], &[1e3], 1.0, &Flow::default(), rules)
+    }
+
+    /// The course with a threat 2 km ahead that crosses to the left (y grows) or right.
+    fn crossing(rules: Rules, across: f64) -> Vec3 {
+        let mut navigator = navigator(rules);
+        for time in [0.0, 6.0, 12.0] {
+            navigator.measure(0, [2e3, 5e3 + across * time, 2e3], time);
+        }
+        navigator.course([0.0, 5e3, 2e3], 12.0, 6.0).velocity
+    }
+
+    #[test]
+    fn threats_are_passed_behind() {
+        let rules = Rules { barrier_per_s: 0.0, share: 0.2, ..Rules::default() };
+        // To the left (y grows) goes the threat, to the right the vehicle, and the other way round.
+        assert!(crossing(rules, 0.9)[1] < 0.0);
+        assert!(crossing(rules, -0.9)[1] > 0.0);
+        assert!(crossing(Rules { side: Side::Same, ..rules }, 0.9)[1] > 0.0);
+        assert!(crossing(Rules { share: 1.0, ..rules }, 0.9)[2] < 0.0);
+        assert!((norm(crossing(rules, 0.9)) - 2.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_goes_away_is_passed_over() {
+        let mut navigator = navigator(Rules::default());
+        let straight = navigator.course([0.0, 5e3, 2e3], 0.0, 6.0);
+        assert_eq!(straight.velocity, [2.0, 0.0, 0.0]);
+        assert_eq!(straight.waypoint, [12.0, 5e3, 2e3]);
+        // Ahead, and faster than the vehicle on the same way.
+        for time in [0.0, 6.0, 12.0] {
+            navigator.measure(0, [3e3 + 3.0 * time, 5e3, 2e3], time);
+        }
+        assert_eq!(navigator.course([0.0, 5e3, 2e3], 12.0, 6.0).velocity, [2.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn the_last_step_ends_at_the_goal() {
+        let course = navigator(Rules::default()).course([9_995.0, 5e3, 2e3], 0.0, 6.0);
+        assert_eq!(course.waypoint, [10e3, 5e3, 2e3]);
+        let there = navigator(Rules::default()).course([10e3, 5e3, 2e3], 0.0, 6.0);
+        assert_eq!(there.velocity, [0.0; 3]);
+    }
+}

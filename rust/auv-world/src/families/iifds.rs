@@ -1,0 +1,158 @@
+//! `iifds`: threats that cross the vehicle's way, after Yao & Zhao (2018): a box of 10 x 10 x 4 km, a way
+//! from corner to corner, spheres on courses that meet it, and a meandering jet.
+
+use super::{Difficulty, Parameters, few, not_negative};
+use crate::error::WorldError;
+use crate::math::{Vec3, add_scaled, distance};
+use crate::rng::{Purpose, Stream};
+use crate::scenario::{Current, Domain, Jet, Limits, Mission, Obstacle, SCHEMA, Scenario, Sphere, Vehicle};
+
+const KM: f64 = 1000.0;
+const SIDE: f64 = 10.0 * KM;
+const DEPTH: f64 = 4.0 * KM;
+/// Start and goal lie so deep (m).
+const LEVEL: f64 = 3.0 * KM;
+/// Threats begin this clear of start and goal (m).
+const MARGIN: f64 = 0.9 * KM;
+/// Threats aim at a point no farther beside the way than this (m).
+const BESIDE: f64 = 0.7 * KM;
+/// Tries before the box counts as full.
+const TRIES: usize = 1000;
+
+/// Greatest speed of a threat (m/s), the jet's over the vehicle's, and the time factor.
+fn calibration(difficulty: Difficulty) -> (f64, f64, f64) {
+    match difficulty {
+        Difficulty::Easy => (1.0, 0.2, 1.5),
+        Difficulty::Normal => (1.8, 0.6, 1.5),
+        Difficulty::Hard => (3.0, 0.9, 1.5),
+    }
+}
+
+/// Draws a scenario.
+///
+/// # Errors
+/// [`WorldError`] for a parameter that is not allowed, by name.
+pub(super) fn draw(seed: u64, parameters: &Parameters) -> Result<Scenario, WorldError> {
+    few("obstacles", parameters.obstacles)?;
+    for (name, given) in [
+        ("vortices", parameters.vortices.is_some()),
+        ("peaks", parameters.peaks.is_some()),
+        ("ring_ratio", parameters.ring_ratio.is_some()),
+        ("change_every_m", parameters.change_every_m.is_some()),
+        ("vortex_drift_mps", parameters.vortex_drift_mps.is_some()),
+    ] {
+        if given {
+            return Err(WorldError::parameter(name, "given", "iifds has threats and a jet, which never change"));
+        }
+    }
+    let (fastest, ratio, time_factor) = calibration(parameters.difficulty);
+    let fastest = not_negative("obstacle_speed_mps", parameters.obstacle_speed_mps, fastest)?;
+    let ratio = not_negative("current_ratio", parameters.current_ratio, ratio)?;
+    let speed = not_negative("vehicle_speed_mps", parameters.vehicle_speed_mps, 2.0)?;
+    let time_factor = not_negative("time_factor", parameters.time_factor, time_factor)?;
+    let mission = Mission { start_m: [0.0, 0.0, LEVEL], goal_m: [SIDE, SIDE, LEVEL] };
+    let mut stream = Stream::new(seed, Purpose::Family, 4);
+    let count = parameters.obstacles.unwrap_or(3);
+    let threats = (0..count).map(|_| threat(&mut stream, &mission, speed, fastest));
+    let obstacles = threats.collect::<Option<Vec<_>>>();
+    let obstacles = obstacles.ok_or_else(|| {
+        WorldError::parameter("obstacle_speed_mps", fastest, "leaves no room for courses that begin in the box")
+    })?;
+    let jet = jet(&mut stream, ratio * speed);
+    Ok(Scenario {
+        schema: SCHEMA,
+        name: format!("iifds-seed-{seed}"),
+        description: String::new(),
+        family: "iifds".into(),
+        dimensions: 3,
+        notes: Vec::new(),
+        domain: Domain { min_m: [0.0; 3], max_m: [SIDE, SIDE, DEPTH], margin_m: 500.0 },
+        limits: Limits { time_factor, ..Limits::default() },
+        vehicle: Vehicle { speed_mps: speed, ..Vehicle::default() },
+        episode: crate::scenario::Episode::default(),
+        sections: None,
+        projection: None,
+        seabed: None,
+        change: None,
+        missions: vec![mission],
+        currents: if ratio > 0.0 { vec![Current::Jet(jet)] } else { Vec::new() },
+        obstacles,
+    })
+}
+
+/// A sphere whose course meets a vehicle that goes straight, or nearly so; `None` if there is no room.
+fn threat(stream: &mut Stream, mission: &Mission, speed: f64, fastest: f64) -> Option<Obstacle> {
+    let (start, goal) = (mission.start_m, mission.goal_m);
+    let length = distance(start, goal);
+    let along: Vec3 = std::array::from_fn(|axis| (goal[axis] - start[axis]) / length);
+    (0..TRIES).find_map(|_| {
+        let way = stream.uniform(0.25, 0.8) * length;
+        let beside = stream.uniform(-BESIDE, BESIDE);
+        let below = stream.uniform(-0.5, 0.5) * BESIDE;
+        let heading = stream.uniform(0.0, std::f64::consts::TAU);
+        let pace = stream.uniform(0.2, 1.0) * fastest;
+        let radius_m = stream.uniform(0.5 * KM, KM);
+        let meeting = add_scaled(add_scaled(start, way, along), beside, [along[1], -along[0], 0.0]);
+        let meeting = [meeting[0], meeting[1], meeting[2] + below];
+        let velocity_mps = [pace * libm::cos(heading), pace * libm::sin(heading), 0.0];
+        let time = if speed > 0.0 { way / speed } else { 0.0 };
+        let position_m = add_scaled(meeting, -time, velocity_mps);
+        let inside = (0..2).all(|axis| (0.0..=SIDE).contains(&position_m[axis]));
+        let clear = |end: Vec3| distance(end, position_m) >= radius_m + MARGIN;
+        let fits = inside && clear(start) && clear(goal);
+        fits.then_some(Obstacle::Sphere(Sphere { position_m, radius_m, velocity_mps }))
+    })
+}
+
+/// The paper's meander at any phase and of either sense.
+fn jet(stream: &mut Stream, peak_speed_mps: f64) -> Jet {
+    Jet {
+        t: stream.uniform(0.0, 10.0),
+        c: 1.2,
+        k: stream.uniform(0.8, 1.0),
+        e: 0.1,
+        b0: stream.uniform(1.5, 2.2),
+        omega: 0.4,
+        chi: std::f64::consts::FRAC_PI_2,
+        peak_speed_mps,
+        length_scale_m: KM,
+        time_scale_s: None,
+        origin_m: [stream.uniform(0.0, SIDE), stream.uniform(0.0, SIDE)],
+        heading_rad: stream.uniform(0.0, std::f64::consts::TAU),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::World;
+    use crate::families::generate;
+
+    #[test]
+    fn threats_meet_the_straight_way() {
+        for seed in 0..50 {
+            let parameters = Parameters { obstacles: Some(1), ..Parameters::default() };
+            let mut world = World::new(generate("iifds", seed, &parameters).unwrap(), seed, 0).unwrap();
+            let (start, goal) = (world.mission().start_m, world.mission().goal_m);
+            let length = distance(start, goal);
+            let nearest = (0..200).map(|i| {
+                let part = f64::from(i) / 200.0;
+                world.set_time(part * length / 2.0);
+                world.clearance(std::array::from_fn(|axis| start[axis] + part * (goal[axis] - start[axis])))
+            });
+            // Aimed 700 m beside and 350 m above at most, and 500 m in radius at least.
+            assert!(nearest.fold(f64::INFINITY, f64::min) < 300.0, "{seed}");
+        }
+    }
+
+    #[test]
+    fn what_does_not_apply_is_refused() {
+        let peaks = Parameters { peaks: Some(3), ..Parameters::default() };
+        assert!(generate("iifds", 1, &peaks).unwrap_err().to_string().starts_with("peaks"));
+        let still = Parameters { obstacle_speed_mps: Some(0.0), current_ratio: Some(0.0), ..Parameters::default() };
+        let scenario = generate("iifds", 1, &still).unwrap();
+        assert!(scenario.currents.is_empty() && scenario.obstacles.iter().all(|o| o.velocity_mps() == [0.0; 3]));
+        let fast = Parameters { obstacle_speed_mps: Some(1e9), ..Parameters::default() };
+        assert!(generate("iifds", 1, &fast).unwrap_err().to_string().starts_with("obstacle_speed_mps"));
+    }
+}
