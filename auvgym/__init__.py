@@ -21,7 +21,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 from auvgym._core import ActionError, PlanningError, ScenarioError, __version__
-from auvgym.planning import Plan, list_planners, path_cost, plan, replan, run_phases
+from auvgym.planning import Plan, gap, list_planners, path_cost, plan, replan, run_phases
 from auvgym.registration import register_environments
 from auvgym.scenario import Scenario, list_families, list_scenarios
 from auvgym.world import World
@@ -39,6 +39,7 @@ __all__ = [
     "World",
     "__version__",
     "evaluation",
+    "gap",
     "list_families",
     "list_planners",
     "list_policies",

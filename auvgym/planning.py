@@ -111,6 +111,31 @@ def plan(
     )
 
 
+def gap(world: World, path: Plan | npt.ArrayLike, cost: str = "lfhh", **options: Any) -> float:
+    """What a path costs above the exact reference of the same problem, planner ``section-optimum``.
+
+    Args:
+        world: the world as it was when the path was planned.
+        path: a plan, or waypoints (n, 3) m.
+        cost: as for :func:`path_cost`.
+        **options: readings of the cost.
+
+    Returns:
+        The difference of the totals. Near 0 for the best section plans; below 0 where waypoints
+        lie better between the reference's places, or off the sections.
+
+    Raises:
+        PlanningError, KeyboardInterrupt: as :func:`plan`.
+    """
+    waypoints = path.waypoints if isinstance(path, Plan) else _path("path", path)
+    total = path_cost(world, waypoints, cost, **options)["total"]
+    start, goal = waypoints[0], waypoints[-1]
+    reference = plan(
+        world, "section-optimum", start=start, goal=goal, cost=cost, cost_options=options
+    )
+    return total - reference.cost["total"]
+
+
 def replan(
     world: World,
     path: npt.ArrayLike,

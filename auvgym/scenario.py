@@ -67,7 +67,7 @@ class Scenario:
         Args:
             family: one of :func:`list_families`.
             seed: 0 .. 2**64 - 1.
-            **parameters: of the families ``lfhh-2d``, ``lfhh-3d`` and ``afhh``: ``difficulty`` ("easy",
+            **parameters: of the families, see ``docs/scenario.md``: ``difficulty`` ("easy",
                 "normal", "hard"), ``variant`` ("debiased", "paper"), ``obstacles``, ``vortices``,
                 ``peaks`` (numbers), ``current_ratio`` (fastest summed current over vehicle
                 speed), ``ring_ratio`` (instead: one vortex's ring speed over vehicle speed),

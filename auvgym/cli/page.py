@@ -25,6 +25,7 @@ _COLUMNS = {
     "cost": "cost",
     "min_clearance_m": "clear m",
     "evaluations": "evals",
+    "gap": "gap",
     "planning_seconds": "plan s",
 }
 
@@ -124,6 +125,7 @@ def _cells(summary: PolicySummary) -> dict[str, Any]:
         "cost": summary.cost,
         "min_clearance_m": summary.min_clearance_m,
         "evaluations": summary.evaluations,
+        "gap": summary.gap,
         "planning_seconds": summary.planning_seconds,
     }
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from auvgym.cli.console import output, parse_settings
+from auvgym.cli.units import duration, length
 
 if TYPE_CHECKING:
     import numpy as np
@@ -38,7 +39,7 @@ def plan(
         str | None, typer.Option(help="X,Y or X,Y,Z in m; LON,LAT with --currents.")
     ] = None,
     cost: Annotated[
-        str | None, typer.Option(help="What to minimise: lfhh, time or energy.")
+        str | None, typer.Option(help="What to minimise: lfhh, afhh, time or energy.")
     ] = None,
     settings: Annotated[
         list[str] | None,
@@ -52,6 +53,9 @@ def plan(
     depth: Annotated[
         float | None, typer.Option(help="Operating depth, m (with --currents).")
     ] = None,
+    gap: Annotated[
+        bool, typer.Option("--gap", help="Say what the plan costs above the section optimum.")
+    ] = False,
     plot: Annotated[Path | None, typer.Option(help="Write a 3-D view to this HTML file.")] = None,
     out: Annotated[
         Path | None, typer.Option(help="Write the waypoints to this .json or .csv file.")
@@ -94,6 +98,8 @@ def plan(
     found = auvgym.plan(world, planner, seed=seed, **ends, **parameters)
     seconds = time.perf_counter() - begin
     _show(world, found, seconds)
+    if gap:
+        _show_gap(world, found, parameters)
     if out is not None:
         write_plan(out, world, found, seed)
         output().print(f"Waypoints: {out}", soft_wrap=True)
@@ -167,19 +173,27 @@ def _show(world: auvgym.World, found: auvgym.Plan, seconds: float) -> None:
     table.add_row("feasible", "yes" if found.feasible else "[red]no[/]")
     terms = (key for key in found.cost if key not in _SHOWN_APART)
     table.add_row("cost", "  ".join(f"{key} {found.cost[key]:.4g}" for key in terms))
-    table.add_row("length", f"{length_m / 1000:.2f} km  (straight {straight_m / 1000:.2f} km)")
+    table.add_row("length", f"{length(length_m)}  (straight {length(straight_m)})")
     table.add_row(
         "travel time",
         f"{_travel_time(world, waypoints)}  (straight {_travel_time(world, straight)}, "
-        f"in still water {straight_m / speed_mps / 3600:.2f} h)",
+        f"in still water {duration(straight_m / speed_mps)})",
     )
     table.add_row("evaluations", f"{found.evaluations}")
     table.add_row("planning", f"{seconds:.3f} s")
     console.print(table)
 
 
+def _show_gap(world: auvgym.World, found: auvgym.Plan, parameters: dict[str, Any]) -> None:
+    import auvgym
+
+    cost, options = parameters.get("cost", "lfhh"), parameters.get("cost_options", {})
+    gap = auvgym.gap(world, found, cost, **options)
+    output().print(f"gap: {gap:+.4f} above the section optimum in cost {cost}")
+
+
 def _travel_time(world: auvgym.World, path: NDArray[np.float64]) -> str:
-    """Hours with the current, or what stands in the way."""
+    """The time with the current, or what stands in the way."""
     import numpy as np
 
     import auvgym
@@ -189,5 +203,5 @@ def _travel_time(world: auvgym.World, path: NDArray[np.float64]) -> str:
     pieces = np.vstack([*fine, path[-1:]])
     cost = auvgym.path_cost(world, pieces, cost="time", turn_limit_rad=math.pi)
     if cost["block"] > 0.0:
-        return f"{cost['time_s'] / 3600:.2f} h, through obstacles"
-    return f"{cost['time_s'] / 3600:.2f} h" if cost["feasible"] else "swept off by the current"
+        return f"{duration(cost['time_s'])}, through obstacles"
+    return duration(cost["time_s"]) if cost["feasible"] else "swept off by the current"

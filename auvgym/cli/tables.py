@@ -61,6 +61,13 @@ COLUMNS = (
         lambda row: _scaled(row.min_clearance_m, 1.0, 0),
         "time, energy (MJ), LFHH cost of the flown path and least clearance: means over the solved",
     ),
+    Column(
+        "gap",
+        lambda row: _scaled(row.gap, 1.0, 3),
+        "gap: what a planner's first plan costs above the section optimum, mean over those "
+        "that break no constraint",
+        dropped=5,
+    ),
     Column("evals", lambda row: _count(row.evaluations)),
     Column(
         "plan s",

@@ -48,6 +48,8 @@ class EpisodeResult:
         steps: environment steps flown.
         reward: the sum of rewards.
         evaluations, replans: what the policy counted.
+        gap: what a planner's first plan costs above the section optimum of the same problem, in the
+            planner's own cost; None for other policies, and where the plan breaks a constraint.
         planning_seconds: wall clock spent planning; the one column that is not reproducible.
         actions: zlib-compressed float32 bytes of the (steps, d) actions, C order.
     """
@@ -80,6 +82,7 @@ class EpisodeResult:
     reward: float
     evaluations: int
     replans: int
+    gap: float | None
     planning_seconds: float
     actions: bytes
 

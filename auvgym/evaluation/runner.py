@@ -146,6 +146,7 @@ def _result(task: Task, flight: Flight, policy: Any, error: str) -> EpisodeResul
         error=error,
         evaluations=int(getattr(policy, "evaluations", 0)),
         replans=int(getattr(policy, "replans", 0)),
+        gap=policy.gap() if hasattr(policy, "gap") and not error else None,
         planning_seconds=float(getattr(policy, "planning_seconds", 0.0)),
         actions=pack_actions(flight.actions),
         **measured,

@@ -14,7 +14,7 @@ from auvgym.evaluation.result import EpisodeResult, PolicySpec
 from auvgym.evaluation.suite import Instance, Suite
 
 APPLICATION_ID = 0x41555647  # "AUVG": SQLite keeps it in the file's header, so that ours is known
-SCHEMA = 1
+SCHEMA = 2
 _SQL_TYPES = {int: "INTEGER", float: "REAL", str: "TEXT", bytes: "BLOB"}
 _KEY = (
     "suite", "policy", "policy_seed", "parameters",

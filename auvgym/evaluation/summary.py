@@ -18,6 +18,8 @@ WILSON_Z = 1.959963984540054  # two-sided 95 %
 class PolicySummary:
     """How one policy did in one environment. SI units.
 
+    ``gap`` is the mean over the episodes that have one.
+
     ``time_s``, ``energy_j``, ``cost`` and ``min_clearance_m`` are means over the episodes it
     solved (None if it solved none) and flatter a policy that fails on the long ones;
     ``time_or_limit_s`` counts each failure as the time limit. ``evaluations``, ``replans`` and
@@ -47,6 +49,7 @@ class PolicySummary:
     min_clearance_m: float | None
     evaluations: float
     replans: float
+    gap: float | None
     planning_seconds: float
 
     @property
@@ -114,6 +117,7 @@ def _summary(rank: int, episodes: Sequence[EpisodeResult]) -> PolicySummary:
         min_clearance_m=_mean(episode.min_clearance_m for episode in solved),
         evaluations=fmean(episode.evaluations for episode in episodes),
         replans=fmean(episode.replans for episode in episodes),
+        gap=_mean(episode.gap for episode in episodes),
         planning_seconds=fmean(episode.planning_seconds for episode in episodes),
     )
 

@@ -48,7 +48,20 @@ class PlannerPolicy(ScriptedPolicy):
         self._changes, self._next = 0, 1
         with self.planning():
             plan = auvgym.plan(self.env.world, self.planner, seed=self.seed, **self.parameters)
+        self._first = (self.env.world, plan)
         self._follow(plan, replans=0)
+
+    def gap(self) -> float | None:
+        """What the episode's first plan costs above the section optimum, see :func:`auvgym.gap`.
+
+        None if the plan breaks a constraint. Asked after the episode: it is no part of planning.
+        """
+        world, plan = self._first
+        if not plan.cost["feasible"]:
+            return None
+        cost = str(self.parameters.get("cost", "lfhh"))
+        options = dict(self.parameters.get("cost_options", {}))
+        return auvgym.gap(world, plan, cost, **options)
 
     def act(self, observation: Observation, info: dict[str, Any]) -> Action:
         """The action towards the next waypoint of the plan, (d,) float32."""

@@ -15,7 +15,7 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib  # type: ignore[import-not-found,unused-ignore]
 
-#: What a card shows: costs or seconds case by case, curves over evaluations, or costs over parameters.
+#: What a card shows: costs or seconds case by case, curves over evaluations, costs over parameters.
 View = Literal["costs", "seconds", "curves", "sweeps"]
 _FOLDER = resources.files("auvgym.reproduction") / "cards"
 
@@ -26,7 +26,7 @@ class CardError(ValueError):
 
 @dataclass(frozen=True)
 class Column:
-    """A planner as the paper ran it; the first column of a card is what the others are compared with.
+    """A planner as the paper ran it; a card's first column is what the others are compared with.
 
     Attributes:
         label: its name in the paper.
@@ -43,7 +43,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Case:
-    """A row: a scenario and a start/goal pair, and the paper's figures for each column if it has any."""
+    """A row: a scenario, a start/goal pair, and the paper's figures for each column if any."""
 
     label: str
     scenario: str
@@ -56,7 +56,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Sweep:
-    """A figure: the planner of the card's first column with every combination of some parameters."""
+    """A figure: the planner of the first column with every combination of some parameters."""
 
     title: str
     parameters: dict[str, list[float]]
@@ -110,7 +110,10 @@ class Card:
 
     def runs(self, seeds: int) -> list[Run]:
         """Every run, seed by seed: what is stopped early has as many seeds everywhere."""
-        columns = [*self.columns, *(column for sweep in self.sweeps for column in swept(self, sweep))]
+        columns = [
+            *self.columns,
+            *(column for sweep in self.sweeps for column in swept(self, sweep)),
+        ]
         return [
             self.run(case, column, seed)
             for seed in range(seeds)
@@ -129,6 +132,11 @@ def swept(card: Card, sweep: Sweep) -> list[Column]:
         Column(str(one), base.planner, {**base.parameters, **one}, base.window)
         for one in combinations
     ]
+
+
+def _case(data: dict[str, Any]) -> Case:
+    lists = {key: tuple(value) for key, value in data.items() if isinstance(value, list)}
+    return Case(**{**data, **lists})
 
 
 def list_cards() -> list[str]:
@@ -150,10 +158,7 @@ def load_card(name: str) -> Card:
         raise CardError(unknown("card", name, list_cards()))
     data = tomllib.loads((_FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
     columns = tuple(Column(**column) for column in data.pop("columns"))
-    cases = tuple(
-        Case(**{key: tuple(value) if isinstance(value, list) else value for key, value in case.items()})
-        for case in data.pop("cases")
-    )
+    cases = tuple(_case(case) for case in data.pop("cases"))
     sweeps = tuple(Sweep(**sweep) for sweep in data.pop("sweeps", []))
     card = Card(name=name, columns=columns, cases=cases, sweeps=sweeps, **data)
     if card.view not in get_args(View):

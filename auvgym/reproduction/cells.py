@@ -1,4 +1,4 @@
-"""The cells of a card: the outcomes of a case under a column, and what they say beside the reference."""
+"""The cells of a card: outcomes of a case under a column, and how they compare."""
 
 from __future__ import annotations
 
@@ -59,7 +59,9 @@ def cells(
     """A row of cells for each case; every run must be among the outcomes."""
     return [
         [
-            Cell(case, column, tuple(outcomes[card.run(case, column, seed)] for seed in range(seeds)))
+            Cell(
+                case, column, tuple(outcomes[card.run(case, column, seed)] for seed in range(seeds))
+            )
             for column in columns
         ]
         for case in card.cases

@@ -1,7 +1,7 @@
 """The journal of an experiment: a line of JSON for each run, written as the run ends.
 
-A run that stands in it is never done again, whichever card asks for it; a last line that was cut off
-is forgotten.
+A run that stands in it is never done again, whichever card asks for it; a last line that was cut
+off is forgotten.
 """
 
 from __future__ import annotations

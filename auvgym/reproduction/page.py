@@ -13,7 +13,9 @@ from auvgym.reproduction.runs import CURVE_POINTS, Outcome, Run, checkpoints
 Table = list[list[str]]
 
 
-def markdown(card: Card, outcomes: Mapping[Run, Outcome], seeds: int, pictures: Sequence[str]) -> str:
+def markdown(
+    card: Card, outcomes: Mapping[Run, Outcome], seeds: int, pictures: Sequence[str]
+) -> str:
     """The whole card.
 
     Args:
@@ -86,8 +88,13 @@ def _agreement(card: Card, rows: list[list[Cell]]) -> str:
             f"- {reference.label} costs less on average than {column.label} in {ours} of "
             f"{len(rows)} cases, {verdict}" + ("." if paper == ours else f" ({paper}).")
         )
-    paper_order = _order(card.columns, [fmean(column) for column in zip(*(row[0].case.mean for row in rows), strict=True)])
-    our_order = _order(card.columns, [fmean(cell.mean for cell in column) for column in zip(*rows, strict=True)])
+    paper_order = _order(
+        card.columns,
+        [fmean(column) for column in zip(*(row[0].case.mean for row in rows), strict=True)],
+    )
+    our_order = _order(
+        card.columns, [fmean(cell.mean for cell in column) for column in zip(*rows, strict=True)]
+    )
     same = "the same" if paper_order == our_order else "not the same"
     lines.append(f"- The order over all cases is {same}. Paper: {paper_order}. Ours: {our_order}.")
     return "\n".join(lines)
@@ -139,7 +146,9 @@ def _sweeps(card: Card, outcomes: Mapping[Run, Outcome], seeds: int) -> list[str
             for start in range(0, len(row), len(across)):
                 part = row[start : start + len(across)]
                 name = f"{part[0].column.parameters[names[0]]:g}" if len(names) > 1 else "cost"
-                table.append([name, *(f"{c.mean:.3f} {c.feasible}/{len(c.outcomes)}" for c in part)])
+                table.append(
+                    [name, *(f"{c.mean:.3f} {c.feasible}/{len(c.outcomes)}" for c in part)]
+                )
             parts += [f"{row[0].case.label}:", _table(table)]
     return [*parts, "Mean cost, and the runs that broke no constraint."]
 

@@ -89,7 +89,9 @@ def _lines(axis: Any, row: list[Cell]) -> None:
     for cell, colour in zip(row, COLOURS, strict=False):
         curves = np.array([outcome.curve for outcome in cell.outcomes])
         spent = checkpoints(int(cell.evaluations))
-        axis.fill_between(spent, *np.quantile(curves, [0.25, 0.75], axis=0), color=colour, alpha=0.2)
+        axis.fill_between(
+            spent, *np.quantile(curves, [0.25, 0.75], axis=0), color=colour, alpha=0.2
+        )
         axis.plot(spent, curves.mean(axis=0), color=colour, lw=1.4, label=cell.column.label)
     axis.axhline(_FEASIBLE, color="grey", lw=0.8, ls=":")
     axis.set_xscale("log")
@@ -104,7 +106,7 @@ def _name_columns(axis: Any, row: list[Cell], places: Any) -> None:
 
 
 def _sweeps(figures: Any, card: Card, outcomes: Mapping[Run, Outcome], seeds: int) -> Any:
-    """A panel for each sweep and case: lines over the last parameter, one for each value of the first."""
+    """A panel for each sweep and case: a line for each value of the first of two parameters."""
     down, abreast = len(card.sweeps), len(card.cases)
     figure = figures.Figure(figsize=(4.6 * abreast, 3.2 * down), layout="constrained")
     axes = figure.subplots(down, abreast, squeeze=False)

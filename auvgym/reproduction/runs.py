@@ -73,7 +73,7 @@ def checkpoints(evaluations: int) -> np.ndarray[Any, np.dtype[np.int64]]:
 
 
 def execute(run: Run) -> Outcome | str:
-    """The outcome of a run, or what went wrong in words; importable, so that processes can run it."""
+    """The outcome of a run, or what went wrong in words; importable for other processes."""
     try:
         return _phases(run) if run.protocol == "phases" else _plan(run)
     except ValueError as error:
