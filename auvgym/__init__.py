@@ -24,6 +24,7 @@ from auvgym._core import ActionError, PlanningError, ScenarioError, __version__
 from auvgym.planning import Plan, gap, list_planners, path_cost, plan, replan, run_phases
 from auvgym.registration import register_environments
 from auvgym.scenario import Scenario, list_families, list_scenarios
+from auvgym.section_problem import SectionProblem
 from auvgym.world import World
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ __all__ = [
     "PlanningError",
     "Scenario",
     "ScenarioError",
+    "SectionProblem",
     "World",
     "__version__",
     "evaluation",

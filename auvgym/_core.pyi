@@ -16,6 +16,7 @@ __all__ = [
     "PlanningError",
     "Scenario",
     "ScenarioError",
+    "SectionProblem",
     "Source",
     "TimeField",
     "World",
@@ -208,6 +209,25 @@ class TimeField:
     def best_waypoint(
         self, world: World, position: _Point, reach_m: float
     ) -> NDArray[np.float64] | None: ...
+
+@final
+class SectionProblem:
+    """A box of numbers and a cost."""
+
+    def __new__(
+        cls,
+        world: World,
+        start: _Point | None,
+        goal: _Point | None,
+        cost: str,
+        options_json: str,
+    ) -> SectionProblem: ...
+    @property
+    def low(self) -> NDArray[np.float64]: ...
+    @property
+    def high(self) -> NDArray[np.float64]: ...
+    def evaluate(self, genes: NDArray[np.float64]) -> NDArray[np.float64]: ...
+    def path(self, genes: NDArray[np.float64]) -> NDArray[np.float64]: ...
 
 def families() -> list[str]: ...
 def observation_layout(dimensions: int) -> list[tuple[str, int, int, float, float, str]]: ...

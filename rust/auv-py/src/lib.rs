@@ -6,6 +6,7 @@ mod field;
 mod interrupt;
 mod planning;
 mod points;
+mod problem;
 mod scenario;
 mod world;
 
@@ -22,6 +23,8 @@ mod _core {
     use crate::field::TimeField;
     #[pymodule_export]
     use crate::planning::{list_planners, path_cost, plan, replan, run_phases};
+    #[pymodule_export]
+    use crate::problem::SectionProblem;
     #[pymodule_export]
     use crate::scenario::{Scenario, families};
     #[pymodule_export]

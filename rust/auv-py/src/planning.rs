@@ -93,6 +93,13 @@ pub fn replan<'py>(
     found(py, replan.plan, Some(replan.sections))
 }
 
+/// Readings of a cost from JSON.
+pub fn cost_options(json: &str) -> PyResult<CostOptions> {
+    let wrong = |message: String| errors::PlanningError::new_err(format!("options of the cost: {message}"));
+    let options = serde_json::from_str(json).map_err(|error| wrong(error.to_string()))?;
+    settings::read(options).map_err(|message| wrong(settings::suggest(message)))
+}
+
 /// The terms of a cost for any path.
 #[pyfunction]
 pub fn path_cost<'py>(
@@ -104,9 +111,7 @@ pub fn path_cost<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let rows = points::rows::<3>("waypoints", &waypoints)?;
     let cost = Cost::from_name(cost).map_err(errors::planning)?;
-    let wrong = |message: String| errors::PlanningError::new_err(format!("options of the cost: {message}"));
-    let options = serde_json::from_str(options_json).map_err(|error| wrong(error.to_string()))?;
-    let options: CostOptions = settings::read(options).map_err(|message| wrong(settings::suggest(message)))?;
+    let options = cost_options(options_json)?;
     let cost = auv_planners::path_cost(&world.0, rows, cost, &options).map_err(errors::planning)?;
     terms(py, &cost)
 }
