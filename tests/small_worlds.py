@@ -74,6 +74,64 @@ def wall(y: float = 9_000.0, thickness: float = 1_000.0) -> dict[str, Any]:
     return {"kind": "polygon", "vertices_m": corners, "top_m": -2_000.0, "bottom_m": 9_000.0}
 
 
+def pen() -> list[dict[str, Any]]:
+    """Walls round the goal at all depths, from outside the box to outside the box."""
+    boxes = [(7e3, 16e3, 13e3, 17e3), (7e3, 16e3, 8e3, 23e3), (12e3, 16e3, 13e3, 23e3)]
+    return [
+        {
+            "kind": "polygon",
+            "vertices_m": [[west, south], [east, south], [east, north], [west, north]],
+            "top_m": -2_000.0,
+            "bottom_m": 9_000.0,
+        }
+        for west, south, east, north in boxes
+    ]
+
+
+def other_obstacles() -> list[dict[str, Any]]:
+    """A cylinder, a superquadric and a polygon across the way, at all depths."""
+    return [
+        {
+            "kind": "cylinder",
+            "position_m": [10_000.0, 6_000.0],
+            "radius_m": 2_000.0,
+            "top_m": -10.0,
+            "bottom_m": 9_000.0,
+        },
+        {
+            "kind": "superquadric",
+            "position_m": [7_000.0, 12_000.0, 0.0],
+            "semi_axes_m": [2_500.0, 1_000.0, 5_000.0],
+            "exponents": [4.0, 2.0, 2.0],
+        },
+        {
+            "kind": "polygon",
+            "vertices_m": [[9e3, 14e3], [14e3, 14e3], [14e3, 16e3], [11e3, 15e3], [9e3, 16e3]],
+            "top_m": -10.0,
+            "bottom_m": 9_000.0,
+        },
+    ]
+
+
+def gridded_sea() -> auvgym.World:
+    """A gridded current in two depths over gridded depths with an island, crossed aslant."""
+    axis = np.linspace(0.0, WIDTH, 21)
+    x, y = np.meshgrid(axis, axis)
+    depths = 3_800.0 - 4_500.0 * np.exp(-((x - 9_000) ** 2 + (y - 10_000) ** 2) / 8e6)
+    u = np.stack([0.4 * np.sin(y / 3_000.0), 0.1 * np.ones_like(x)])
+    v = np.stack([0.3 * np.cos(x / 4_000.0), np.zeros_like(x)])
+    axes = {"x_m": axis.tolist(), "y_m": axis.tolist()}
+    currents = {"kind": "gridded", **axes, "depth_m": [0.0, DEPTH]}
+    currents |= {"u_mps": u.ravel().tolist(), "v_mps": v.ravel().tolist()}
+    return world(
+        3,
+        missions=[{"start_m": [2_000.0, 3_000.0, 500.0], "goal_m": [17_000.0, 16_000.0, 900.0]}],
+        sections={"frame": "mission", "count": 20, "half_width_m": 6_000.0, "cell_m": 500.0},
+        seabed={"kind": "gridded", **axes, "depth_m": depths.ravel().tolist()},
+        currents=[currents],
+    )
+
+
 def answers(world: auvgym.World, count: int = 400) -> bytes:
     """What a world says about currents, clearance and floor at fixed points, bit for bit."""
     low, high = world.domain

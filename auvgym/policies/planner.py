@@ -9,6 +9,15 @@ import numpy as np
 import auvgym
 from auvgym.policies.base import Action, Knows, Observation, ScriptedPolicy, Vector
 
+_POOL = {
+    "schema": 1,
+    "name": "pool",
+    "dimensions": 2,
+    "domain": {"min_m": [0.0, 0.0, 0.0], "max_m": [1.0, 1.0, 0.0], "margin_m": 0.0},
+    "missions": [{"start_m": [0.5, 0.0, 0.0], "goal_m": [0.5, 1.0, 0.0]}],
+    "limits": {"goal_radius_m": 0.1},
+}
+
 
 class PlannerPolicy(ScriptedPolicy):
     """Plans at the start, follows the waypoints, and re-plans within a window at each map change.
@@ -37,9 +46,10 @@ class PlannerPolicy(ScriptedPolicy):
         self.parameters = parameters
         if parameters:
             # The planner alone knows its parameters: a plan of one evaluation asks it now, not
-            # in the middle of a run.
+            # in the middle of a run. The pool is so small that no grid in it is large, however
+            # fine the environment's own may be.
             trial = {**parameters, "max_evaluations": 1}
-            auvgym.plan(auvgym.World("lfhh-2d-1"), planner, seed=seed, **trial)
+            auvgym.plan(auvgym.World(auvgym.Scenario.from_dict(_POOL)), planner, **trial)
 
     def reset(self, env: Any) -> None:
         """Plan from the start to the goal on the first map."""

@@ -42,7 +42,8 @@ impl Window {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Replan {
     /// The vehicle's place, the new path in the window, and the rest of the old path. Cost and feasibility
-    /// are those of all this; evaluations count every attempt.
+    /// are those of all this; evaluations count every attempt. Its history is that of the last attempt if the
+    /// window reaches to the end, and otherwise the outcome alone: window and whole path cost differently.
     pub plan: Plan,
     /// The new path in the window alone, as planned at the last attempt: its cost is the paper's F.
     pub window: Plan,
@@ -125,14 +126,15 @@ fn join(
     rest: &[Vec3],
     evaluations: u64,
 ) -> Result<Plan, PlanError> {
-    let mut waypoints = window.waypoints.clone();
-    waypoints.extend_from_slice(rest);
-    let cost = if rest.is_empty() {
-        window.cost
-    } else {
-        path_cost(request.world, &waypoints, common.cost, &common.cost_options)?
-    };
-    Ok(Plan { waypoints, feasible: cost.feasible, cost, evaluations, ..window.clone() })
+    if rest.is_empty() {
+        let before = evaluations - window.evaluations;
+        let history = window.history.iter().map(|(spent, total)| (before + spent, *total)).collect();
+        return Ok(Plan { evaluations, history, ..window.clone() });
+    }
+    let waypoints = [window.waypoints.as_slice(), rest].concat();
+    let cost = path_cost(request.world, &waypoints, common.cost, &common.cost_options)?;
+    let history = vec![(evaluations, cost.total)];
+    Ok(Plan { waypoints, feasible: cost.feasible, cost, evaluations, history, ..window.clone() })
 }
 
 /// Where along its path a vehicle is.

@@ -24,9 +24,12 @@ impl Grid {
     pub fn new(world: &World, settings: Settings) -> Self {
         let domain = &world.scenario().domain;
         let size: Vec3 = std::array::from_fn(|axis| domain.max_m[axis] - domain.min_m[axis]);
-        let wanted = settings.spacing_or(world, 1.0);
-        let nodes: f64 = size.iter().map(|edge| edge / wanted + 1.0).product();
-        let wanted = if nodes > MOST_NODES { wanted * (nodes / MOST_NODES).sqrt() } else { wanted };
+        let nodes = |spacing: f64| size.iter().map(|edge| (edge / spacing).round() + 1.0).product::<f64>();
+        let mut wanted = settings.spacing_or(world, 1.0);
+        while nodes(wanted) > MOST_NODES {
+            // As if all three edges counted; where they do not, again.
+            wanted *= libm::cbrt(nodes(wanted) / MOST_NODES).max(1.001);
+        }
         let counts: [usize; 3] = std::array::from_fn(|axis| (size[axis] / wanted).round() as usize + 1);
         let spacing: Vec3 = std::array::from_fn(|axis| match counts[axis] {
             1 => wanted,

@@ -49,10 +49,13 @@ impl Lattice {
         let anchor = problem.frame().lateral(start[0], start[1]);
         let [top, bottom] = problem.frame().depth_bounds();
         loop {
-            let across = ticks(anchor, grain.step[0], [least, most]);
-            let down =
-                if problem.has_depth() { ticks(start[2], grain.step[1], [top, bottom]) } else { vec![problem.level()] };
-            let (columns, rows) = (across.len(), down.len());
+            let across = Ticks::new(anchor, grain.step[0], [least, most]);
+            let down = if problem.has_depth() {
+                Ticks::new(start[2], grain.step[1], [top, bottom])
+            } else {
+                Ticks::new(problem.level(), 1.0, [problem.level(); 2])
+            };
+            let (columns, rows) = (across.count, down.count);
             let reach = [0, 1].map(|axis| {
                 let steps = (grain.reach[axis].min(longest) / grain.step[axis] + ROUNDING).floor();
                 steps.min(([columns, rows][axis] - 1) as f64) as usize
@@ -62,6 +65,7 @@ impl Lattice {
                 grain.step = grain.step.map(|step| 1.1 * step);
                 continue;
             }
+            let (across, down) = (across.places(), down.places());
             let mut lateral = Vec::with_capacity(layers * columns);
             let spans = low.iter().zip(high).map(|(low, high)| {
                 let slack = ROUNDING * grain.step[0];
@@ -148,17 +152,31 @@ impl Lattice {
     }
 }
 
-/// Multiples of `step` from `anchor` within the bounds; their middle if there is none.
-fn ticks(anchor: f64, step: f64, [low, high]: [f64; 2]) -> Vec<f64> {
-    // Coarse enough for the count to be a number that memory can hold; the caller makes it coarser still.
-    let step = step.max((high - low) / MOST_STEPS);
-    if high <= low {
-        return vec![low];
+/// Multiples of a step from an anchor within bounds; their middle if there is none.
+struct Ticks {
+    anchor: f64,
+    /// The first multiple.
+    first: f64,
+    step: f64,
+    bounds: [f64; 2],
+    count: usize,
+}
+
+impl Ticks {
+    fn new(anchor: f64, step: f64, bounds: [f64; 2]) -> Self {
+        let [low, high] = bounds;
+        let first = ((low - anchor) / step - ROUNDING).ceil();
+        let last = ((high - anchor) / step + ROUNDING).floor();
+        if high <= low || last < first {
+            return Self { anchor: 0.5 * (low + high), first: 0.0, step, bounds, count: 1 };
+        }
+        // Steps may be so fine that the count is beyond all numbers: the caller makes them coarser.
+        let count = (last - first).min(MOST_STEPS) as usize + 1;
+        Self { anchor, first, step, bounds, count }
     }
-    let first = ((low - anchor) / step - ROUNDING).ceil();
-    let last = ((high - anchor) / step + ROUNDING).floor();
-    if last < first {
-        return vec![0.5 * (low + high)];
+
+    fn places(&self) -> Vec<f64> {
+        let [low, high] = self.bounds;
+        (0..self.count).map(|i| (self.anchor + (self.first + i as f64) * self.step).clamp(low, high)).collect()
     }
-    (0..=(last - first) as usize).map(|i| (anchor + (first + i as f64) * step).clamp(low, high)).collect()
 }
