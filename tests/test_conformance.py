@@ -156,9 +156,7 @@ def same(one: auvgym.Plan, other: auvgym.Plan) -> bool:
     )
 
 
-def check(
-    ocean: World, plan: auvgym.Plan, start: Array, goal: Array, cost: str = "lfhh"
-) -> None:
+def check(ocean: World, plan: auvgym.Plan, start: Array, goal: Array, cost: str = "lfhh") -> None:
     """Whatever was asked: where the path leads, and that everything said of it is true."""
     assert plan.waypoints.dtype == np.float64
     assert plan.waypoints.shape == (len(plan.waypoints), 3)

@@ -109,6 +109,26 @@ def test_unknown_planners_are_told_of_all() -> None:
         auvgym.plan(auvgym.World("lfhh-2d-1"), "ompl:rrtstarr")
 
 
+@pytest.mark.parametrize("ours", ["rrt-star", "prm-star"])
+@pytest.mark.parametrize("scenario", ["lfhh-2d-1", "lfhh-3d-1", "afhh-1"])
+def test_the_engines_own_are_as_good(scenario: str, ours: str) -> None:
+    """Mean length over three seeds, with OMPL's clearance queries against our tested motions."""
+    asked = auvgym.World(scenario)
+
+    def mean_length(planner: str) -> float:
+        plans = [auvgym.plan(asked, planner, seed=seed) for seed in range(3)]
+        for plan in plans:
+            assert plan.feasible
+            fine = np.vstack([np.linspace(a, b, 50) for a, b in itertools.pairwise(plan.waypoints)])
+            assert asked.clearance(fine).min() >= 0.0
+        lengths = [np.linalg.norm(np.diff(plan.waypoints, axis=0), axis=1).sum() for plan in plans]
+        return float(np.mean(lengths))
+
+    straight = float(np.linalg.norm(asked.goal - asked.start))
+    theirs = mean_length("ompl:" + ours.replace("-", ""))
+    assert straight < mean_length(ours) <= 1.01 * theirs
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_ctrl_c_stops_it(name: str) -> None:
     world = auvgym.World("lfhh-2d-1")
