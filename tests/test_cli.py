@@ -18,6 +18,7 @@ from typer.testing import CliRunner, Result
 import auvgym
 from auvgym.cli import app
 from auvgym.evaluation import Instance, PolicySpec, Store, Suite, run
+from auvgym.registration import ENVIRONMENTS
 
 SUITE_TOML = """
 schema = 1
@@ -55,7 +56,7 @@ def test_list_names_everything() -> None:
     result = call("list")
     assert result.exit_code == 0
     names = [*auvgym.list_scenarios(), *auvgym.list_planners(), *auvgym.list_policies()]
-    for name in [*names, "AUVDynamic2D-v0", "AUVDynamic3D-v0", "demo"]:
+    for name in [*names, *ENVIRONMENTS, "demo"]:
         assert name in result.output
     assert "lfhh-2d-1" not in call("list", "policies").output
 

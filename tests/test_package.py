@@ -14,6 +14,7 @@ import pytest
 
 import auvgym
 
+ENVIRONMENTS = ["AUVDynamic2D-v0", "AUVDynamic3D-v0", "AUVStatic3D-v0"]
 ROOT = Path(__file__).parents[1]
 HEAVY = [
     "torch",
@@ -56,7 +57,7 @@ print(*sorted(m.partition('.')[0] for m in sys.modules))
     assert not set(HEAVY) & set(python(code).split())
 
 
-@pytest.mark.parametrize("env_id", ["AUVDynamic2D-v0", "AUVDynamic3D-v0"])
+@pytest.mark.parametrize("env_id", ENVIRONMENTS)
 def test_gymnasium_makes_environments_without_an_import(env_id: str) -> None:
     code = f"""
 import gymnasium
@@ -71,7 +72,7 @@ import gymnasium, importlib, auvgym
 importlib.reload(auvgym)
 print(sorted(name for name in gymnasium.registry if name.startswith("AUV")))
 """
-    assert python(code) == "['AUVDynamic2D-v0', 'AUVDynamic3D-v0']"
+    assert python(code) == str(ENVIRONMENTS)
 
 
 def test_the_version_is_that_of_the_distribution() -> None:

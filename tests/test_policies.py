@@ -15,7 +15,7 @@ from auvgym.evaluation import Instance, PolicySpec, Store, Suite, run
 from auvgym.policies.planner import next_waypoint
 
 FLOORS = ["random", "hold", "straight", "lane", "sonar-rule", "astar-replan"]
-ENVIRONMENTS = ["AUVDynamic2D-v0", "AUVDynamic3D-v0"]
+ENVIRONMENTS = ["AUVDynamic2D-v0", "AUVDynamic3D-v0", "AUVStatic3D-v0"]
 
 # Still water and one disc across the straight line: what a policy knows decides how it ends.
 ONE_DISC = {
