@@ -103,6 +103,24 @@ def test_a_run_that_fails_is_named_and_the_others_are_kept(tmp_path: Path) -> No
     assert len(Journal(tmp_path / "quick.jsonl").outcomes) == 1
 
 
+JOURNALS = Path(__file__).parents[1] / "baselines" / "reproduction" / "runs"
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in JOURNALS.glob("*.jsonl")))
+def test_runs_in_the_repository_come_out_again(name: str) -> None:
+    """The quickest run of each planner: what the cards print is what this engine does."""
+    outcomes = Journal(JOURNALS / f"{name}.jsonl").outcomes
+    quickest: dict[str, Run] = {}
+    for run, outcome in sorted(outcomes.items(), key=lambda item: item[1].seconds):
+        if outcome.evaluations <= 100_000 or name == "afhh":
+            quickest.setdefault(run.planner, run)
+    for planner in [*quickest][:3] if name == "afhh" else quickest:
+        again = execute(quickest[planner])
+        assert isinstance(again, Outcome)
+        kept = outcomes[quickest[planner]]
+        assert dataclasses.replace(again, seconds=kept.seconds) == kept, planner
+
+
 def outcome(cost: float) -> Outcome:
     return Outcome(cost, cost < 2.0, 100, 0.5, (cost,) * CURVE_POINTS)
 
