@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 __all__ = [
     "ActionError",
     "Episode",
+    "Navigator",
     "PlanningError",
     "Scenario",
     "ScenarioError",
@@ -208,6 +209,20 @@ class TimeField:
     def best_waypoint(
         self, world: World, position: _Point, reach_m: float
     ) -> NDArray[np.float64] | None: ...
+
+@final
+class Navigator:
+    """A vehicle's way from start to goal among threats that it sees."""
+
+    def __new__(
+        cls, world: World, start: _Point, goal: _Point, parameters_json: str
+    ) -> Navigator: ...
+    def see(self, position: _Point, radius_m: float, time_s: float) -> None: ...
+    def forget(self, before_s: float) -> None: ...
+    def threats(self, time_s: float) -> list[tuple[_Point, _Point, float]]: ...
+    def course(
+        self, position: _Point, time_s: float, tick_s: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
 
 def families() -> list[str]: ...
 def observation_layout(dimensions: int) -> list[tuple[str, int, int, float, float, str]]: ...

@@ -91,9 +91,9 @@ class AUVThreat3DEnv(AUVEnv):
       sensors), the path of a TOML file or a Scenario; None draws new threats and a new jet of the
       family ``iifds`` for every episode. ``mission``: its start/goal pair.
     - ``difficulty``: "easy", "normal" (default) or "hard": threats of at most 1, 1.8 or 3 m/s, a
-      jet of 0.2, 0.6 or 0.9 V on its centre line.
+      jet of 0.2, 0.5 or 0.7 V on its centre line, time factor 1.5, 1.75 or 2.
     - ``obstacles`` (3); ``obstacle_speed_mps``: of the fastest threat; ``current_ratio``: the jet's
-      speed over V, 0 for still water; ``time_factor`` (1.5); ``vehicle_speed_mps``;
+      speed over V, 0 for still water; ``time_factor``; ``vehicle_speed_mps``;
       ``sensor_noise_m`` (20; 0: exact).
     - ``action_mode``: "waypoint". ``render_mode``: None, "human" or "rgb_array".
 

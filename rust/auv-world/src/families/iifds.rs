@@ -21,12 +21,13 @@ const NOISE: f64 = 20.0;
 /// Tries before the box counts as full.
 const TRIES: usize = 1000;
 
-/// Greatest speed of a threat (m/s), the jet's over the vehicle's, and the time factor.
+/// Greatest speed of a threat (m/s), the jet's over the vehicle's, and the time factor: such that the straight
+/// line seldom arrives and the flow's law of motion among threats nearly always.
 fn calibration(difficulty: Difficulty) -> (f64, f64, f64) {
     match difficulty {
         Difficulty::Easy => (1.0, 0.2, 1.5),
-        Difficulty::Normal => (1.8, 0.6, 1.5),
-        Difficulty::Hard => (3.0, 0.9, 1.5),
+        Difficulty::Normal => (1.8, 0.5, 1.75),
+        Difficulty::Hard => (3.0, 0.7, 2.0),
     }
 }
 
