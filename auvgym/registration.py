@@ -9,6 +9,7 @@ ENVIRONMENTS = {
     "AUVDynamic2D-v0": "auvgym.envs:AUVDynamic2DEnv",
     "AUVDynamic3D-v0": "auvgym.envs:AUVDynamic3DEnv",
     "AUVStatic3D-v0": "auvgym.envs:AUVStatic3DEnv",
+    "AUVThreat3D-v0": "auvgym.envs:AUVThreat3DEnv",
 }
 
 

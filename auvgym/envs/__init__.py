@@ -3,6 +3,7 @@
 from auvgym.envs.dynamic_2d import AUVDynamic2DEnv
 from auvgym.envs.dynamic_3d import AUVDynamic3DEnv
 from auvgym.envs.static_3d import AUVStatic3DEnv
+from auvgym.envs.threat_3d import AUVThreat3DEnv
 from auvgym.envs.waypoint import AUVEnv
 
-__all__ = ["AUVDynamic2DEnv", "AUVDynamic3DEnv", "AUVEnv", "AUVStatic3DEnv"]
+__all__ = ["AUVDynamic2DEnv", "AUVDynamic3DEnv", "AUVEnv", "AUVStatic3DEnv", "AUVThreat3DEnv"]

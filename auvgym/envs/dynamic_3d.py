@@ -93,7 +93,7 @@ class AUVDynamic3DEnv(AUVEnv):
     - ``current_ratio``: fastest summed current of every map over V, or ``ring_ratio``: ring speed
       of a single vortex over V; ``time_factor``; ``obstacles``; ``vortices``, ``peaks``;
       ``vehicle_speed_mps``; ``change_every_m`` (0: never); ``obstacle_speed_mps``;
-      ``vortex_drift_mps``.
+      ``vortex_drift_mps``; ``sensor_noise_m`` (0: the ``obstacles`` block is exact).
     - ``action_mode``: "waypoint". ``render_mode``: None, "human" or "rgb_array".
 
     The same seed gives the same bytes. Environments can be deep-copied and pickled while running

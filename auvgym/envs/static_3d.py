@@ -85,7 +85,7 @@ class AUVStatic3DEnv(AUVEnv):
       vortices that are asked for.
     - ``obstacles``; ``peaks``; ``vortices`` (0) with ``variant`` and ``current_ratio`` or
       ``ring_ratio``; ``time_factor``; ``vehicle_speed_mps``; ``change_every_m`` (0: never);
-      ``obstacle_speed_mps``; ``vortex_drift_mps``.
+      ``obstacle_speed_mps``; ``vortex_drift_mps``; ``sensor_noise_m`` (0).
     - ``action_mode``: "waypoint". ``render_mode``: None, "human" or "rgb_array".
 
     The same seed gives the same bytes. Environments can be deep-copied and pickled while running

@@ -15,6 +15,7 @@ from auvgym._names import unknown
 from auvgym.policies.astar_replan import AstarReplanPolicy
 from auvgym.policies.base import Policy, PolicyError, ScriptedPolicy
 from auvgym.policies.hold import HoldPolicy
+from auvgym.policies.iifds_reactive import IifdsReactivePolicy
 from auvgym.policies.lane import LanePolicy
 from auvgym.policies.planner import PlannerPolicy
 from auvgym.policies.random_actions import RandomPolicy
@@ -30,6 +31,7 @@ SCRIPTED: dict[str, type[ScriptedPolicy]] = {
         LanePolicy,
         SonarRulePolicy,
         AstarReplanPolicy,
+        IifdsReactivePolicy,
     )
 }
 

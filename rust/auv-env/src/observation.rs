@@ -2,6 +2,7 @@
 
 use auv_world::World;
 use auv_world::math::{Vec3, add_scaled, norm, sub};
+use auv_world::rng::{Purpose, Stream};
 
 use crate::episode::Episode;
 use crate::frame::Frame;
@@ -94,6 +95,40 @@ impl Writer<'_> {
     }
 }
 
+/// Seconds between the two looks from which a velocity is told.
+const BETWEEN_LOOKS_S: f64 = 60.0;
+
+/// What sees obstacles. Its noise follows from the episode's seed and the tick, so that looking twice at one
+/// time shows the same.
+struct Sensor {
+    noise_m: f64,
+    stream: Stream,
+}
+
+impl Sensor {
+    fn new(episode: &Episode) -> Self {
+        let stream = Stream::new(episode.world().seed(), Purpose::Sensor, episode.state().ticks as u32);
+        Self { noise_m: episode.world().scenario().episode.sensor_noise_m, stream }
+    }
+
+    /// A true position (m) as it is seen.
+    fn position(&mut self, truth: Vec3, axes: usize) -> Vec3 {
+        self.disturbed(truth, axes, self.noise_m)
+    }
+
+    /// A true velocity (m/s) as it is seen: the difference of two positions over the time between.
+    fn velocity(&mut self, truth: Vec3, axes: usize) -> Vec3 {
+        self.disturbed(truth, axes, std::f64::consts::SQRT_2 * self.noise_m / BETWEEN_LOOKS_S)
+    }
+
+    fn disturbed(&mut self, mut truth: Vec3, axes: usize, deviation: f64) -> Vec3 {
+        if deviation > 0.0 {
+            truth[..axes].iter_mut().for_each(|entry| *entry = self.stream.normal(*entry, deviation));
+        }
+        truth
+    }
+}
+
 /// An obstacle within sonar range.
 #[derive(Debug, Clone, Copy)]
 struct Contact {
@@ -146,6 +181,7 @@ pub(crate) fn observe(episode: &Episode, ranges: &[f64], values: &mut [f32]) {
         out.put(1.0 - range / sonar_range, 0.0, 1.0);
     }
     let axes = if deep { 3 } else { 2 };
+    let mut sensor = Sensor::new(episode);
     for contact in nearest(world, position, sonar_range, axes) {
         let Some(contact) = contact else {
             for _ in 0..2 * axes + 1 {
@@ -153,9 +189,9 @@ pub(crate) fn observe(episode: &Episode, ranges: &[f64], values: &mut [f32]) {
             }
             continue;
         };
-        let offset = frame.from_world(contact.offset);
+        let offset = frame.from_world(sensor.position(contact.offset, axes));
         let obstacle = &world.scenario().obstacles[contact.index];
-        let velocity = frame.from_world(world.obstacle_velocity(contact.index));
+        let velocity = frame.from_world(sensor.velocity(world.obstacle_velocity(contact.index), axes));
         offset[..axes].iter().for_each(|v| out.put(v / sonar_range, -1.0, 1.0));
         out.put(obstacle.extent_m() / sonar_range, 0.0, 1.0);
         velocity[..axes].iter().for_each(|v| out.put(v / speed, -1.0, 1.0));

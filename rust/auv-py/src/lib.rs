@@ -4,6 +4,7 @@ mod episode;
 mod errors;
 mod field;
 mod interrupt;
+mod navigator;
 mod planning;
 mod points;
 mod problem;
@@ -21,6 +22,8 @@ mod _core {
     use crate::errors::{ActionError, PlanningError, ScenarioError};
     #[pymodule_export]
     use crate::field::TimeField;
+    #[pymodule_export]
+    use crate::navigator::Navigator;
     #[pymodule_export]
     use crate::planning::{list_planners, path_cost, plan, replan, run_phases};
     #[pymodule_export]

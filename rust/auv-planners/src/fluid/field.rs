@@ -123,6 +123,11 @@ impl Field {
         &mut self.bodies
     }
 
+    /// One more obstacle, which belongs to no cluster.
+    pub fn push(&mut self, body: Body) {
+        self.bodies.push(body);
+    }
+
     /// The rules.
     pub fn modulation(&self) -> &Modulation {
         &self.modulation

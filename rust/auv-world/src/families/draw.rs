@@ -50,6 +50,7 @@ impl<'a> Draw<'a> {
             ("change_every_m", parameters.change_every_m),
             ("obstacle_speed_mps", parameters.obstacle_speed_mps),
             ("vortex_drift_mps", parameters.vortex_drift_mps),
+            ("sensor_noise_m", parameters.sensor_noise_m),
         ] {
             not_negative(name, value, 0.0)?;
         }
@@ -144,6 +145,7 @@ impl<'a> Draw<'a> {
             station_radius_m: legs.station_radius_m * length,
             waypoint_margin_m: legs.waypoint_margin_m * length,
             sonar_range_m: legs.sonar_range_m * length,
+            sensor_noise_m: self.parameters.sensor_noise_m.unwrap_or(0.0),
         }
     }
 

@@ -5,7 +5,7 @@ use super::{Difficulty, Parameters, few, not_negative};
 use crate::error::WorldError;
 use crate::math::{Vec3, add_scaled, distance};
 use crate::rng::{Purpose, Stream};
-use crate::scenario::{Current, Domain, Jet, Limits, Mission, Obstacle, SCHEMA, Scenario, Sphere, Vehicle};
+use crate::scenario::{Current, Domain, Episode, Jet, Limits, Mission, Obstacle, SCHEMA, Scenario, Sphere, Vehicle};
 
 const KM: f64 = 1000.0;
 const SIDE: f64 = 10.0 * KM;
@@ -16,15 +16,18 @@ const LEVEL: f64 = 3.0 * KM;
 const MARGIN: f64 = 0.9 * KM;
 /// Threats aim at a point no farther beside the way than this (m).
 const BESIDE: f64 = 0.7 * KM;
+/// Noise of seen threats (m): that of the set whose success rates are known with noise.
+const NOISE: f64 = 20.0;
 /// Tries before the box counts as full.
 const TRIES: usize = 1000;
 
-/// Greatest speed of a threat (m/s), the jet's over the vehicle's, and the time factor.
+/// Greatest speed of a threat (m/s), the jet's over the vehicle's, and the time factor: such that the straight
+/// line seldom arrives and the flow's law of motion among threats nearly always.
 fn calibration(difficulty: Difficulty) -> (f64, f64, f64) {
     match difficulty {
         Difficulty::Easy => (1.0, 0.2, 1.5),
-        Difficulty::Normal => (1.8, 0.6, 1.5),
-        Difficulty::Hard => (3.0, 0.9, 1.5),
+        Difficulty::Normal => (1.8, 0.5, 1.75),
+        Difficulty::Hard => (3.0, 0.7, 2.0),
     }
 }
 
@@ -69,7 +72,7 @@ pub(super) fn draw(seed: u64, parameters: &Parameters) -> Result<Scenario, World
         domain: Domain { min_m: [0.0; 3], max_m: [SIDE, SIDE, DEPTH], margin_m: 500.0 },
         limits: Limits { time_factor, ..Limits::default() },
         vehicle: Vehicle { speed_mps: speed, ..Vehicle::default() },
-        episode: crate::scenario::Episode::default(),
+        episode: legs(not_negative("sensor_noise_m", parameters.sensor_noise_m, NOISE)?),
         sections: None,
         projection: None,
         seabed: None,
@@ -78,6 +81,21 @@ pub(super) fn draw(seed: u64, parameters: &Parameters) -> Result<Scenario, World
         currents: if ratio > 0.0 { vec![Current::Jet(jet)] } else { Vec::new() },
         obstacles,
     })
+}
+
+/// Legs so short that a threat goes but a part of its radius meanwhile.
+fn legs(sensor_noise_m: f64) -> Episode {
+    Episode {
+        tick_s: 3.0,
+        reach_m: 600.0,
+        capture_radius_m: 100.0,
+        minimum_leg_s: 15.0,
+        maximum_leg_s: 60.0,
+        station_radius_m: 30.0,
+        waypoint_margin_m: 100.0,
+        sonar_range_m: 3.0 * KM,
+        sensor_noise_m,
+    }
 }
 
 /// A sphere whose course meets a vehicle that goes straight, or nearly so; `None` if there is no room.

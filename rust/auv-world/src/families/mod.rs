@@ -78,6 +78,8 @@ pub struct Parameters {
     pub obstacle_speed_mps: Option<f64>,
     /// Speed of every vortex centre between changes (m/s), 0.
     pub vortex_drift_mps: Option<f64>,
+    /// Noise of seen obstacles (m), 0 (iifds 20).
+    pub sensor_noise_m: Option<f64>,
 }
 
 /// Draws a scenario of a family.

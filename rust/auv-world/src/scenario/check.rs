@@ -158,6 +158,7 @@ impl Scenario {
         positive("episode.sonar_range_m", episode.sonar_range_m)?;
         not_negative("episode.station_radius_m", episode.station_radius_m)?;
         not_negative("episode.waypoint_margin_m", episode.waypoint_margin_m)?;
+        not_negative("episode.sensor_noise_m", episode.sensor_noise_m)?;
         finite("episode.maximum_leg_s", episode.maximum_leg_s)?;
         if episode.maximum_leg_s < episode.minimum_leg_s {
             let rule = format!("must be at least minimum_leg_s = {}", episode.minimum_leg_s);

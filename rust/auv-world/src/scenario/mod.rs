@@ -167,6 +167,14 @@ pub struct Episode {
     pub waypoint_margin_m: f64,
     /// The sonar sees this far (m).
     pub sonar_range_m: f64,
+    /// Obstacles are seen where they are but for normal noise of this standard deviation along each axis (m).
+    /// Without noise it is left out of the file.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub sensor_noise_m: f64,
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 impl Default for Episode {
@@ -180,6 +188,7 @@ impl Default for Episode {
             station_radius_m: 100.0,
             waypoint_margin_m: 300.0,
             sonar_range_m: 5000.0,
+            sensor_noise_m: 0.0,
         }
     }
 }

@@ -3,6 +3,8 @@
 
 use auv_world::math::{Vec3, add_scaled};
 
+use super::barrier::Ball;
+
 /// What the filter expects.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {
@@ -43,18 +45,33 @@ impl Kalman {
         self.velocity
     }
 
+    /// The threat of a radius (m) that is followed, as it will be at a time as far as is known now.
+    pub fn ball(&self, radius: f64, time_s: f64) -> Ball {
+        Ball { centre: self.position(time_s), velocity: self.velocity, radius }
+    }
+
+    /// How many standard deviations off what is expected a measurement would be, on the axis where it is worst.
+    pub fn surprise(&self, position: Vec3, time_s: f64) -> f64 {
+        let [pp, _, _] = self.ahead((time_s - self.time_s).max(0.0));
+        let deviation = (pp + self.noise.measurement_m * self.noise.measurement_m).max(1e-12).sqrt();
+        let expected = self.position(time_s);
+        (0..3).map(|axis| (position[axis] - expected[axis]).abs() / deviation).fold(0.0, f64::max)
+    }
+
+    /// The covariance that much later: F P F' + Q.
+    fn ahead(&self, dt: f64) -> [f64; 3] {
+        let [pp, pv, vv] = self.covariance;
+        let q = self.noise.process;
+        [pp + dt * (2.0 * pv + dt * vv) + q * dt * dt * dt / 3.0, pv + dt * vv + q * dt * dt / 2.0, vv + q * dt]
+    }
+
     /// Takes a measured position (m) in. Measurements older than the last one are not understood and count
     /// as of its time.
     pub fn measure(&mut self, position: Vec3, time_s: f64) {
         let dt = (time_s - self.time_s).max(0.0);
         self.time_s += dt;
         self.position = add_scaled(self.position, dt, self.velocity);
-        let [pp, pv, vv] = self.covariance;
-        let q = self.noise.process;
-        // F P F' + Q.
-        let pp = pp + dt * (2.0 * pv + dt * vv) + q * dt * dt * dt / 3.0;
-        let pv = pv + dt * vv + q * dt * dt / 2.0;
-        let vv = vv + q * dt;
+        let [pp, pv, vv] = self.ahead(dt);
         // Exact measurements must not divide 0 by 0.
         let variance = (pp + self.noise.measurement_m * self.noise.measurement_m).max(1e-12);
         let (gain, rate) = (pp / variance, pv / variance);

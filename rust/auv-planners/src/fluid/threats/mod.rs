@@ -3,7 +3,9 @@
 mod barrier;
 mod kalman;
 mod navigator;
+mod settings;
 
 pub use barrier::{Ball, turned_away};
 pub use kalman::{Kalman, Noise};
 pub use navigator::{Course, Navigator, Rules, Side};
+pub use settings::{RuleSet, Settings};

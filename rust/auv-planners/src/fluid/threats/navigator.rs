@@ -5,6 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use auv_world::World;
 use auv_world::math::{Vec3, add_scaled, distance, dot, norm, sub};
+use serde::Deserialize;
 
 use super::barrier::{Ball, turned_away};
 use super::kalman::{Kalman, Noise};
@@ -17,9 +18,14 @@ use crate::fluid::trace::{Steps, Walls, put_out, undisturbed};
 
 /// Places nearer to each other than this part of their size are one.
 const ROUNDING: f64 = 1e-12;
+/// Threats whose radii differ by less than this part may be one and the same.
+const ALIKE: f64 = 1e-3;
+/// What is so many standard deviations off what was expected is something else.
+const SURPRISING: f64 = 5.0;
 
 /// On which side a threat is passed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Side {
     /// Behind it: against its way across (eq. 31-32).
     Reverse,
@@ -83,6 +89,21 @@ pub struct Course {
     pub waypoint: Vec3,
 }
 
+impl Rules {
+    /// The paper's own: threats as large as they are, passed behind and for as long as they are there, no barrier.
+    pub fn paper() -> Self {
+        Self { margin_m: 0.0, ignore_receding: false, barrier_per_s: 0.0, ..Self::default() }
+    }
+}
+
+/// Who follows a threat.
+#[derive(Debug, Clone, Copy)]
+struct Tracker {
+    filter: Kalman,
+    /// When the threat was seen last (s).
+    seen_s: f64,
+}
+
 /// A vehicle's way to a goal among things that move.
 #[derive(Debug, Clone)]
 pub struct Navigator {
@@ -90,7 +111,7 @@ pub struct Navigator {
     field: Field,
     /// Bodies before this one are at rest; the others are the threats.
     still: usize,
-    trackers: Vec<Option<Kalman>>,
+    trackers: Vec<Option<Tracker>>,
     radii: Vec<f64>,
     balls: Vec<Ball>,
     walls: Walls,
@@ -106,12 +127,7 @@ impl Navigator {
         let mut all: Vec<Body> = bodies(world, flow.margin_m, |_| rules.still);
         all.retain(|body| body.velocity == [0.0; 3]);
         let still = all.len();
-        for radius in radii {
-            let sphere = Superquadric::new([0.0; 3], [radius + rules.margin_m; 3], [2.0; 3]);
-            let mut threat = Body::new(Shape::Superquadric(sphere), rules.still);
-            threat.active = false;
-            all.push(threat);
-        }
+        all.extend(radii.iter().map(|radius| threat(*radius, &rules)));
         let mut modulation = flow.modulation(start, goal);
         modulation.relative = rules.relative;
         // Threats wander: what overlaps now will not stay.
@@ -133,9 +149,58 @@ impl Navigator {
     /// Takes in where a threat was measured to be (m).
     pub fn measure(&mut self, threat: usize, position: Vec3, time_s: f64) {
         match &mut self.trackers[threat] {
-            Some(filter) => filter.measure(position, time_s),
-            nothing => *nothing = Some(Kalman::new(self.rules.noise, position, time_s)),
+            Some(tracker) => {
+                tracker.filter.measure(position, time_s);
+                tracker.seen_s = time_s;
+            }
+            nothing => {
+                let filter = Kalman::new(self.rules.noise, position, time_s);
+                *nothing = Some(Tracker { filter, seen_s: time_s });
+            }
         }
+    }
+
+    /// Takes in that something of a radius (m) was measured to be somewhere (m): the threat of that radius that
+    /// was expected thereabouts, or a new one.
+    pub fn see(&mut self, position: Vec3, radius: f64, time_s: f64) {
+        let alike = |known: f64| (known - radius).abs() <= ALIKE * radius;
+        let mut best = (SURPRISING, None);
+        let mut free = None;
+        for (threat, (tracker, known)) in self.trackers.iter().zip(&self.radii).enumerate() {
+            match tracker {
+                Some(tracker) if alike(*known) => {
+                    let surprise = tracker.filter.surprise(position, time_s);
+                    if surprise < best.0 {
+                        best = (surprise, Some(threat));
+                    }
+                }
+                None if *known == radius => free = Some(threat),
+                _ => {}
+            }
+        }
+        let threat = best.1.or(free).unwrap_or_else(|| {
+            self.field.push(threat(radius, &self.rules));
+            self.trackers.push(None);
+            self.radii.push(radius);
+            self.radii.len() - 1
+        });
+        self.measure(threat, position, time_s);
+    }
+
+    /// Forgets the threats that were seen last before a time (s).
+    pub fn forget(&mut self, before_s: f64) {
+        let threats = &mut self.field.bodies_mut()[self.still..];
+        for (tracker, body) in self.trackers.iter_mut().zip(threats) {
+            if tracker.is_some_and(|tracker| tracker.seen_s < before_s) {
+                (*tracker, body.active) = (None, false);
+            }
+        }
+    }
+
+    /// The threats that are known: centre (m), velocity (m/s), radius (m).
+    pub fn threats(&self, time_s: f64) -> Vec<Ball> {
+        let known = self.trackers.iter().zip(&self.radii);
+        known.filter_map(|(tracker, radius)| Some(tracker.as_ref()?.filter.ball(*radius, time_s))).collect()
     }
 
     /// Where to go from here (m) in the next `tick_s` seconds. Allocates nothing.
@@ -176,9 +241,10 @@ impl Navigator {
         for ((body, tracker), radius) in
             self.field.bodies_mut()[self.still..].iter_mut().zip(&self.trackers).zip(&self.radii)
         {
-            let Some(filter) = tracker else { continue };
-            let (centre, velocity) = (filter.position(time_s), filter.velocity());
-            self.balls.push(Ball { centre, velocity, radius: *radius });
+            let Some(Tracker { filter, .. }) = tracker else { continue };
+            let ball = filter.ball(*radius, time_s);
+            let Ball { centre, velocity, .. } = ball;
+            self.balls.push(ball);
             let closing = sub(heading.map(|h| self.steps.speed_mps * h), velocity);
             let recedes = dot(sub(here, centre), closing) > 0.0;
             body.active = !(self.rules.ignore_receding && recedes);
@@ -198,6 +264,14 @@ impl Navigator {
             }
         }
     }
+}
+
+/// A threat of a radius (m), wherever it is.
+fn threat(radius: f64, rules: &Rules) -> Body {
+    let sphere = Superquadric::new([0.0; 3], [radius + rules.margin_m; 3], [2.0; 3]);
+    let mut threat = Body::new(Shape::Superquadric(sphere), rules.still);
+    threat.active = false;
+    threat
 }
 
 fn unit(vector: Vec3) -> Option<Vec3> {
@@ -234,6 +308,30 @@ mod tests {
         assert!(crossing(Rules { side: Side::Same, ..rules }, 0.9)[1] > 0.0);
         assert!(crossing(Rules { share: 1.0, ..rules }, 0.9)[2] < 0.0);
         assert!((norm(crossing(rules, 0.9)) - 2.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_seen_again_is_known_again() {
+        let mut navigator =
+            navigator(Rules { noise: Noise { measurement_m: 20.0, ..Rules::default().noise }, ..Rules::default() });
+        for time in [0.0, 15.0, 30.0, 45.0] {
+            navigator.see([3e3 - time, 5e3, 2e3], 700.0, time);
+            navigator.see([5e3 + time, 5e3, 2e3], 700.0, time);
+        }
+        let mut known = navigator.threats(60.0);
+        assert_eq!(known.len(), 2);
+        known.sort_by(|a, b| a.centre[0].total_cmp(&b.centre[0]));
+        assert!(known.iter().zip([2940.0, 5060.0]).all(|(ball, x)| (ball.centre[0] - x).abs() < 5.0));
+        // One of another size, and one that turned back long ago.
+        navigator.see([3e3, 5e3, 2e3], 800.0, 45.0);
+        navigator.see([3300.0, 5e3, 2e3], 700.0, 60.0);
+        assert_eq!(navigator.threats(60.0).len(), 4);
+        navigator.forget(50.0);
+        assert_eq!(navigator.threats(60.0).len(), 1);
+        navigator.see([8e3, 5e3, 2e3], 700.0, 60.0);
+        assert_eq!(navigator.radii, [1e3, 700.0, 700.0, 800.0, 700.0]);
+        navigator.forget(70.0);
+        assert_eq!(navigator.course([0.0, 5e3, 2e3], 70.0, 6.0).velocity, [2.0, 0.0, 0.0]);
     }
 
     #[test]

@@ -1,0 +1,222 @@
+"""AUVThreat3D-v0: threats that move while the vehicle flies, seen with noise, and who gets past them."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from typing import Any
+
+import gymnasium
+import numpy as np
+import numpy.typing as npt
+import pytest
+from small_worlds import open_water, sphere, vortices
+
+import auvgym
+from auvgym import Scenario, _core, policies
+
+Array = npt.NDArray[Any]
+
+
+def make(environment: str = "AUVThreat3D-v0", **settings: Any) -> Any:
+    return gymnasium.make(f"auvgym:{environment}", **settings)
+
+
+def fly(env: Any, policy: Any, episode_seed: int) -> tuple[dict[str, Any], Array]:
+    """One episode: the last info, and every observation, (n, entries)."""
+    observation, info = env.reset(options={"episode_seed": episode_seed})
+    policy.reset(env)
+    seen = [observation]
+    while info["outcome"] == "running":
+        observation, _, _, _, info = env.step(policy.act(observation, info))
+        seen.append(observation)
+    return info, np.array(seen)
+
+
+def arrivals(policy: str, episodes: int, parameters: Any = None, **settings: Any) -> int:
+    env = make(**settings)
+    flown = [
+        fly(env, policies.make(policy, **(parameters or {})), seed)[0] for seed in range(episodes)
+    ]
+    assert all(info["min_clearance_m"] > 0.0 for info in flown if info["is_success"])
+    return sum(info["is_success"] for info in flown)
+
+
+def drawn(family: str, **parameters: Any) -> dict[str, Any]:
+    return Scenario.generate(family, 3, **parameters).to_dict()
+
+
+# --- The sensor ----------------------------------------------------------------------------------
+
+
+def test_noise_disturbs_the_obstacles_alone_by_what_is_asked_for() -> None:
+    noisy, exact = make(), make(sensor_noise_m=0.0)
+    where = noisy.unwrapped.observation_layout["obstacles"]
+    offsets, velocities = [], []
+    for seed in range(20):
+        _, disturbed = fly(noisy, policies.make("straight"), seed)
+        _, true = fly(exact, policies.make("straight"), seed)
+        rest = np.delete(np.arange(true.shape[1]), np.r_[where])
+        assert np.array_equal(disturbed[:, rest], true[:, rest])
+        a, b = (block[:, where].reshape(-1, 7).astype(np.float64) for block in (disturbed, true))
+        assert np.array_equal(a[:, 3], b[:, 3])  # extents
+        assert not a[b[:, 3] == 0.0].any()  # nothing is seen where there is nothing
+        # An entry of 1 was clipped: how far beyond it something is, nobody sees.
+        whole = (b[:, 3] > 0.0) & (np.abs(np.column_stack([a, b])) < 1.0).all(axis=1)
+        offsets.append(3000.0 * (a - b)[whole, :3])
+        velocities.append(2.0 * (a - b)[whole, 4:])
+    off, speed = np.concatenate(offsets), np.concatenate(velocities)
+    assert len(off) > 300
+    assert np.allclose(off.std(axis=0), 20.0, rtol=0.1)
+    assert np.allclose(speed.std(axis=0), np.sqrt(2) * 20.0 / 60.0, rtol=0.1)
+    assert np.all(np.abs(off.mean(axis=0)) < 3.0)
+
+
+def test_looking_twice_shows_the_same_and_the_seed_decides() -> None:
+    env = make()
+    first, _ = env.reset(options={"episode_seed": 5})
+    core = env.unwrapped.episode
+    assert np.array_equal(first, core.observe())
+    assert np.array_equal(first, core.observe())
+    again, _ = env.reset(options={"episode_seed": 5})
+    assert np.array_equal(first, again)
+    assert not np.array_equal(first, env.reset(options={"episode_seed": 6})[0])
+
+
+@pytest.mark.parametrize("way", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])
+def test_copies_go_on_with_the_same_noise(way: Any) -> None:
+    env = make().unwrapped
+    env.reset(seed=2)
+    ahead = np.array([0.6, 0.1, 0.0], np.float32)
+    for _ in range(5):
+        env.step(ahead)
+    other = way(env)
+    for _ in range(10):
+        (a, *rest), (b, *others) = env.step(ahead), other.step(ahead)
+        assert np.array_equal(a, b)
+        assert rest == others
+
+
+def test_every_environment_can_be_made_noisy_and_only_this_one_is() -> None:
+    for family in ("lfhh-2d", "lfhh-3d", "afhh"):
+        assert "sensor_noise_m" not in drawn(family)["episode"]
+        assert drawn(family, sensor_noise_m=7.0)["episode"]["sensor_noise_m"] == 7.0
+    assert drawn("iifds")["episode"]["sensor_noise_m"] == 20.0
+    for environment in ("AUVDynamic2D-v0", "AUVDynamic3D-v0"):
+        plain, noisy = make(environment), make(environment, sensor_noise_m=50.0)
+        _, a = fly(plain, policies.make("straight"), 1)
+        _, b = fly(noisy, policies.make("straight"), 1)
+        where = plain.unwrapped.observation_layout["obstacles"]
+        rest = np.delete(np.arange(a.shape[1]), np.r_[where])
+        assert np.array_equal(a[:, rest], b[:, rest])
+        assert not np.array_equal(a[:, where], b[:, where])
+
+
+def test_noise_is_part_of_the_scenario_and_none_leaves_its_text_as_it_was() -> None:
+    plain = Scenario.from_dict(open_water(3))
+    zero = Scenario.from_dict(open_water(3, episode={"sensor_noise_m": 0.0}))
+    assert zero.hash == plain.hash
+    assert Scenario.from_dict(open_water(3, episode={"sensor_noise_m": 5.0})).hash != plain.hash
+    with pytest.raises(auvgym.ScenarioError, match=r"sensor_noise_m = -1.*must not be negative"):
+        Scenario.from_dict(open_water(3, episode={"sensor_noise_m": -1.0}))
+    with pytest.raises(ValueError, match="sensor_noise_m"):
+        Scenario.generate("iifds", 1, sensor_noise_m=-1.0)
+
+
+# --- The world -----------------------------------------------------------------------------------
+
+
+def test_threats_move_while_a_short_leg_is_flown() -> None:
+    env = make()
+    env.reset(seed=4)
+    core, before = env.unwrapped, 0.0
+    for _ in range(20):
+        there = [np.array(one["position_m"]) for one in core.world.snapshot()["obstacles"]]
+        _, _, ended, _, info = env.step(core.action_for(core.world.goal))
+        if ended:
+            break
+        leg, before = info["time_s"] - before, info["time_s"]
+        assert 15.0 <= leg <= 60.0
+        here = [np.array(one["position_m"]) for one in core.world.snapshot()["obstacles"]]
+        moved = [float(np.linalg.norm(b - a)) for a, b in zip(there, here, strict=True)]
+        # Slower than 1.8 m/s, but none stands still.
+        assert all(0.0 < way <= 1.8 * leg + 1e-6 for way in moved)
+
+
+@pytest.mark.parametrize("difficulty", ["easy", "normal", "hard"])
+def test_the_straight_line_seldom_arrives_and_the_flow_nearly_always(difficulty: str) -> None:
+    assert arrivals("straight", 40, difficulty=difficulty) < 20
+    assert arrivals("iifds-reactive", 15, difficulty=difficulty) >= 14
+
+
+# --- The navigator and its policy ----------------------------------------------------------------
+
+
+def test_the_papers_rules_arrive_less_often() -> None:
+    paper = arrivals("iifds-reactive", 30, {"rules": "paper"}, difficulty="hard")
+    assert 15 <= paper < arrivals("iifds-reactive", 30, difficulty="hard")
+
+
+@pytest.mark.parametrize("scenario", ["iifds-threat1", "iifds-threats3", "iifds-complex"])
+def test_the_papers_missions(scenario: str) -> None:
+    env = make(scenario=scenario)
+    assert fly(env, policies.make("straight"), 0)[0]["outcome"] == "collision"
+    info, _ = fly(env, policies.make("iifds-reactive"), 0)
+    assert info["is_success"] and info["min_clearance_m"] > 20.0
+
+
+def test_what_rests_on_the_map_is_no_threat() -> None:
+    rock = sphere([10_000, 9_000, 2_000], 1_500.0)
+    env = make(
+        "AUVDynamic3D-v0",
+        scenario=Scenario.from_dict(open_water(3, obstacles=[rock], limits={"time_factor": 2.0})),
+    )
+    policy: Any = policies.make("iifds-reactive")
+    info, seen = fly(env, policy, 0)
+    assert seen[:, env.unwrapped.observation_layout["obstacles"]].any()
+    assert info["is_success"] and not policy._navigator.threats(0.0)
+
+
+def test_it_flies_the_other_worlds_too() -> None:
+    for dimensions in (2, 3):
+        still = open_water(dimensions, currents=[vortices((9e3, 9e3, 2e3))])
+        env = make(f"AUVDynamic{dimensions}D-v0", scenario=Scenario.from_dict(still))
+        assert fly(env, policies.make("iifds-reactive"), 0)[0]["is_success"]
+
+
+def test_a_navigator_follows_what_it_sees() -> None:
+    world = auvgym.World("iifds-threat1")._core
+    navigator = _core.Navigator(world, (0, 5e3, 2e3), (1e4, 5e3, 2e3), '{"noise_m": 20.0}')
+    random = np.random.default_rng(0)
+    for time_s in range(0, 300, 15):
+        x, y, z = np.array([4e3 - 1.5 * time_s, 5e3, 2e3]) + random.normal(0.0, 20.0, 3)
+        navigator.see((x, y, z), 700.0, float(time_s))
+    ((centre, velocity, radius),) = navigator.threats(300.0)
+    assert radius == 700.0
+    assert np.linalg.norm(np.subtract(centre, [3550.0, 5e3, 2e3])) < 60.0
+    assert np.linalg.norm(np.subtract(velocity, [-1.5, 0.0, 0.0])) < 0.3
+    way, waypoint = navigator.course((2e3, 5e3, 2e3), 300.0, 10.0)
+    assert np.linalg.norm(way) == pytest.approx(2.0)
+    assert np.allclose(waypoint, np.add([2e3, 5e3, 2e3], 10.0 * way))
+    assert abs(way[1]) + abs(way[2]) > 0.2  # round it, not through it
+    navigator.forget(301.0)
+    assert navigator.threats(300.0) == []
+    assert np.allclose(navigator.course((2e3, 5e3, 2e3), 300.0, 10.0)[0], [2.0, 0.0, 0.0])
+
+
+def test_wrong_parameters_are_named() -> None:
+    with pytest.raises(auvgym.PlanningError, match="unknown field `sare`.*did you mean `share`"):
+        policies.make("iifds-reactive", sare=1)
+    with pytest.raises(auvgym.PlanningError, match="rules: unknown variant `mine`"):
+        policies.make("iifds-reactive", rules="mine")
+    with pytest.raises(auvgym.PlanningError, match=r"margin_m = -1"):
+        policies.make("iifds-reactive", margin_m=-1.0)
+    world = auvgym.World("iifds-threat1")._core
+    with pytest.raises(auvgym.PlanningError, match="goal"):
+        _core.Navigator(world, (0, 0, 3e3), (1e6, 0, 0), "{}")
+    navigator = _core.Navigator(world, (0, 0, 3e3), (1e4, 1e4, 3e3), "{}")
+    for radius in (0.0, float("nan")):
+        with pytest.raises(ValueError, match="radius_m"):
+            navigator.see((1.0, 2.0, 3.0), radius, 0.0)
+    with pytest.raises(ValueError, match=r"position\[1\]"):
+        navigator.course((0.0, float("inf"), 0.0), 0.0, 1.0)
