@@ -270,6 +270,16 @@ def test_a_budget_is_spent_to_the_last_evaluation(planner: str, limit: int, name
     assert plan.evaluations == limit
 
 
+@pytest.mark.parametrize("planner", KINDS["population"].planners)
+def test_generations_limit_the_search(planner: str) -> None:
+    ocean = World("lfhh-2d-1")
+    parameters = {"population": 60, "stop": "exhaust"}
+    for generations in (0, 1, 5):
+        plan = auvgym.plan(ocean, planner, seed=4, generations=generations, **parameters)
+        assert plan.evaluations == 60 * (generations + 1)
+        assert len(plan.history) == generations + 1
+
+
 # --- no way ------------------------------------------------------------------------------------
 
 

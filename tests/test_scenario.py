@@ -139,7 +139,12 @@ bottom_m = 1000.0
 FAMILIES: dict[str, dict[str, Any]] = {
     "lfhh-2d": {"obstacle_speed_mps": 0.3, "vortex_drift_mps": 0.2},
     "lfhh-3d": {"obstacle_speed_mps": 0.3, "vortex_drift_mps": 0.2},
-    "afhh": {"vortices": 3, "obstacle_speed_mps": 0.3, "vortex_drift_mps": 0.2, "change_every_m": 6},
+    "afhh": {
+        "vortices": 3,
+        "obstacle_speed_mps": 0.3,
+        "vortex_drift_mps": 0.2,
+        "change_every_m": 6,
+    },
     "iifds": {},
 }
 
