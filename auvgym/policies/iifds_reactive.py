@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any, Literal
 
 import numpy as np
 
-from auvgym import _core
+import auvgym
+from auvgym.navigation import navigator
 from auvgym.policies.base import Action, Knows, Observation, ScriptedPolicy, Vector
 from auvgym.policies.sonar_rule import goal_aligned_frame
 
@@ -51,8 +51,7 @@ class IifdsReactivePolicy(ScriptedPolicy):
         super().__init__(seed)
         self.parameters = {"rules": rules, **parameters}
         # The engine alone knows the parameters: ask it now, not in the middle of a run.
-        trial = _core.Scenario.generate("iifds", 0, "{}")
-        self._navigate(_core.World(trial, 0, 0), {})
+        navigator(auvgym.World("iifds-threat1"), **self.parameters)
 
     def reset(self, env: Any) -> None:
         """Look at what is at rest."""
@@ -105,12 +104,6 @@ class IifdsReactivePolicy(ScriptedPolicy):
             waypoint = np.clip(here + self._ahead_m / length * offset, self._low, self._high)
             offset = waypoint - here
         return waypoint
-
-    def _navigate(self, world: _core.World, told: dict[str, float]) -> _core.Navigator:
-        x, y, z = (float(value) for value in world.start)
-        a, b, c = (float(value) for value in world.goal)
-        text = json.dumps({**told, **self.parameters})
-        return _core.Navigator(world, (x, y, z), (a, b, c), text)
 
     def _look_at_map(self) -> None:
         world = self.env.world
