@@ -1,4 +1,4 @@
-"""AUVThreat3D-v0: threats that move while the vehicle flies, seen with noise; who gets past them."""
+"""AUVThreat3D-v0: threats that move while one flies, seen with noise; who gets past them."""
 
 from __future__ import annotations
 

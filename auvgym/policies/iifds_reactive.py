@@ -90,9 +90,7 @@ class IifdsReactivePolicy(ScriptedPolicy):
                     self._navigator.see(_point(centre), radius, time_s)
             self._navigator.forget(time_s - _LEGS_UNSEEN * self._leg_s)
             velocity, _ = self._navigator.course(_point(here), time_s, self._leg_s)
-        left_m = float(np.linalg.norm(self.goal - here))
-        speed = float(np.linalg.norm(velocity))
-        if speed == 0.0 or left_m <= self._ahead_m:
+        if not np.any(velocity):
             return self.steer_to(self.goal)
         return self.steer_to(self._along_walls(here, velocity))
 
@@ -107,9 +105,8 @@ class IifdsReactivePolicy(ScriptedPolicy):
 
     def _look_at_map(self) -> None:
         world = self.env.world
-        self._navigator = self._navigate(
-            self.env.episode.world, {"noise_m": max(self._noise_m, _ROUNDING_M)}
-        )
+        told = {"noise_m": max(self._noise_m, _ROUNDING_M)}
+        self._navigator = navigator(world, **{**told, **self.parameters})
         places = [
             obstacle["position_m"]
             for obstacle in world.snapshot()["obstacles"]
