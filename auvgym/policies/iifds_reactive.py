@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any, Literal
 
 import numpy as np
 
-from auvgym import _core
+import auvgym
+from auvgym.navigation import navigator
 from auvgym.policies.base import Action, Knows, Observation, ScriptedPolicy, Vector
 from auvgym.policies.sonar_rule import goal_aligned_frame
 
@@ -51,8 +51,7 @@ class IifdsReactivePolicy(ScriptedPolicy):
         super().__init__(seed)
         self.parameters = {"rules": rules, **parameters}
         # The engine alone knows the parameters: ask it now, not in the middle of a run.
-        trial = _core.Scenario.generate("iifds", 0, "{}")
-        self._navigate(_core.World(trial, 0, 0), {})
+        navigator(auvgym.World("iifds-threat1"), **self.parameters)
 
     def reset(self, env: Any) -> None:
         """Look at what is at rest."""
@@ -91,9 +90,7 @@ class IifdsReactivePolicy(ScriptedPolicy):
                     self._navigator.see(_point(centre), radius, time_s)
             self._navigator.forget(time_s - _LEGS_UNSEEN * self._leg_s)
             velocity, _ = self._navigator.course(_point(here), time_s, self._leg_s)
-        left_m = float(np.linalg.norm(self.goal - here))
-        speed = float(np.linalg.norm(velocity))
-        if speed == 0.0 or left_m <= self._ahead_m:
+        if not np.any(velocity):
             return self.steer_to(self.goal)
         return self.steer_to(self._along_walls(here, velocity))
 
@@ -106,17 +103,10 @@ class IifdsReactivePolicy(ScriptedPolicy):
             offset = waypoint - here
         return waypoint
 
-    def _navigate(self, world: _core.World, told: dict[str, float]) -> _core.Navigator:
-        x, y, z = (float(value) for value in world.start)
-        a, b, c = (float(value) for value in world.goal)
-        text = json.dumps({**told, **self.parameters})
-        return _core.Navigator(world, (x, y, z), (a, b, c), text)
-
     def _look_at_map(self) -> None:
         world = self.env.world
-        self._navigator = self._navigate(
-            self.env.episode.world, {"noise_m": max(self._noise_m, _ROUNDING_M)}
-        )
+        told = {"noise_m": max(self._noise_m, _ROUNDING_M)}
+        self._navigator = navigator(world, **{**told, **self.parameters})
         places = [
             obstacle["position_m"]
             for obstacle in world.snapshot()["obstacles"]
