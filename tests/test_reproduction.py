@@ -32,7 +32,9 @@ CARD = Card(
 )
 
 
-@pytest.mark.parametrize("name", reproduction.list_cards())
+@pytest.mark.parametrize(
+    "name", [name for name in reproduction.list_cards() if not name.startswith("iifds")]
+)
 def test_a_card_is_whole(name: str) -> None:
     card = load_card(name)
     for column in card.columns:

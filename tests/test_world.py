@@ -628,7 +628,9 @@ def test_a_snapshot_is_plain_and_complete() -> None:
         assert json.loads(json.dumps(snapshot)) == snapshot
         assert len(snapshot["obstacles"]) == len(file["obstacles"])
         fields = [c for c in file.get("currents", []) if c["kind"] == "vortices"]
-        told = [(field["core_radius_m"], vortex) for field in fields for vortex in field["vortices"]]
+        told = [
+            (field["core_radius_m"], vortex) for field in fields for vortex in field["vortices"]
+        ]
         assert len(snapshot["vortices"]) == len(told)
         if file.get("seabed", {}).get("kind") == "peaks":
             assert snapshot["peaks"] == file["seabed"]["peaks"]

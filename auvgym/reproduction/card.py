@@ -8,6 +8,7 @@ from importlib import resources
 from typing import Any, Literal, get_args
 
 from auvgym._names import unknown
+from auvgym.reproduction.measures import MEASURES
 from auvgym.reproduction.runs import Protocol, Run, parameters_text
 
 if sys.version_info >= (3, 11):
@@ -15,8 +16,9 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib  # type: ignore[import-not-found,unused-ignore]
 
-#: What a card shows: costs or seconds case by case, curves over evaluations, costs over parameters.
-View = Literal["costs", "seconds", "curves", "sweeps"]
+#: What a card shows: costs or seconds case by case, curves over evaluations, costs over parameters,
+#: or whatever was measured, case by case.
+View = Literal["costs", "seconds", "curves", "sweeps", "measures"]
 _FOLDER = resources.files("auvgym.reproduction") / "cards"
 
 
@@ -43,7 +45,16 @@ class Column:
 
 @dataclass(frozen=True)
 class Case:
-    """A row: a scenario, a start/goal pair, and the paper's figures for each column if any."""
+    """A row: a scenario, a start/goal pair, and the paper's figures for each column if any.
+
+    Attributes:
+        label: in words.
+        scenario: a shipped scenario.
+        mission: its start/goal pair.
+        mean, deviation, seconds, sign: the paper's costs, times and verdicts.
+        parameters: what all columns of this row have in common.
+        paper: for the view "measures", measure -> the paper's figures; "" where it has none.
+    """
 
     label: str
     scenario: str
@@ -52,6 +63,8 @@ class Case:
     deviation: tuple[float, ...] = ()
     seconds: tuple[float, ...] = ()
     sign: tuple[str, ...] = ()
+    parameters: dict[str, Any] = field(default_factory=dict)
+    paper: dict[str, list[float | str]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -76,6 +89,7 @@ class Card:
         columns: planners.
         cases: rows.
         sweeps: for the view "sweeps".
+        measures: for the view "measures", those that are shown.
         why: where and why we and the paper differ, in words (Markdown).
     """
 
@@ -88,6 +102,7 @@ class Card:
     cases: tuple[Case, ...]
     parameters: dict[str, Any] = field(default_factory=dict)
     sweeps: tuple[Sweep, ...] = ()
+    measures: tuple[str, ...] = ()
     why: str = ""
 
     @property
@@ -97,7 +112,7 @@ class Card:
 
     def run(self, case: Case, column: Column, seed: int) -> Run:
         """One run of a cell."""
-        parameters = {**self.parameters, **column.parameters}
+        parameters = {**self.parameters, **case.parameters, **column.parameters}
         return Run(
             self.protocol,
             case.scenario,
@@ -160,7 +175,11 @@ def load_card(name: str) -> Card:
     columns = tuple(Column(**column) for column in data.pop("columns"))
     cases = tuple(_case(case) for case in data.pop("cases"))
     sweeps = tuple(Sweep(**sweep) for sweep in data.pop("sweeps", []))
-    card = Card(name=name, columns=columns, cases=cases, sweeps=sweeps, **data)
+    measures = tuple(data.pop("measures", []))
+    card = Card(name=name, columns=columns, cases=cases, sweeps=sweeps, measures=measures, **data)
     if card.view not in get_args(View):
         raise CardError(f"card {name}: {unknown('view', card.view, list(get_args(View)))}")
+    for measure in card.measures:
+        if measure not in MEASURES:
+            raise CardError(f"card {name}: {unknown('measure', measure, list(MEASURES))}")
     return card

@@ -27,6 +27,10 @@ class Cell:
         """Costs, seed by seed."""
         return [outcome.cost for outcome in self.outcomes]
 
+    def measured(self, name: str) -> list[float]:
+        """A measure, seed by seed."""
+        return [outcome.measures[name] for outcome in self.outcomes]
+
     @property
     def mean(self) -> float:
         """Mean cost."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from statistics import fmean
+from statistics import fmean, stdev
 
 import auvgym
 from auvgym.reproduction.card import Card, Case, Column, swept
 from auvgym.reproduction.cells import Cell, cells, sign
+from auvgym.reproduction.measures import MEASURES
 from auvgym.reproduction.runs import CURVE_POINTS, Outcome, Run, checkpoints
 
 Table = list[list[str]]
@@ -29,7 +30,7 @@ def markdown(
         parts += _sweeps(card, outcomes, seeds)
     else:
         rows = cells(card, card.columns, outcomes, seeds)
-        parts += {"costs": _costs, "seconds": _seconds, "curves": _curves}[card.view](card, rows)
+        parts += _VIEWS[card.view](card, rows)
     parts += [f"![{card.title}]({picture})" for picture in pictures]
     if card.why:
         parts += ["## Why", card.why.strip()]
@@ -135,6 +136,36 @@ def _curves(card: Card, rows: list[list[Cell]]) -> list[str]:
     return [_table(table), "Best cost so far, mean over the seeds. Below 2 a path is feasible."]
 
 
+def _measures(card: Card, rows: list[list[Cell]]) -> list[str]:
+    parts = []
+    for measure in card.measures:
+        table = [["case", "", *(column.label for column in card.columns)]]
+        for row in rows:
+            label, paper = row[0].case.label, row[0].case.paper.get(measure)
+            if paper:
+                figures = (one if isinstance(one, str) else f"{one:g}" for one in paper)
+                table.append([label, "paper", *figures])
+            ours = [_measured(cell.measured(measure)) for cell in row]
+            table.append(["" if paper else label, "ours", *ours])
+        parts += [f"## {MEASURES[measure]}", _table(table)]
+    runs = [
+        f"{column.label} {sum(row[index].feasible for row in rows)}/"
+        f"{sum(len(row[index].outcomes) for row in rows)}"
+        for index, column in enumerate(card.columns)
+    ]
+    return [
+        *parts,
+        "One figure where all seeds agree, else mean (standard deviation) and [least].",
+        f"Runs that arrived and met nothing: {', '.join(runs)}.",
+    ]
+
+
+def _measured(values: Sequence[float]) -> str:
+    if max(values) - min(values) <= 1e-9 * max(abs(values[0]), 1e-9):
+        return f"{values[0]:.4g}"
+    return f"{fmean(values):.4g} ({stdev(values):.2g}) [{min(values):.4g}]"
+
+
 def _sweeps(card: Card, outcomes: Mapping[Run, Outcome], seeds: int) -> list[str]:
     parts = []
     for sweep in card.sweeps:
@@ -157,3 +188,6 @@ def _table(rows: Table) -> str:
     head, *body = rows
     lines = [head, ["---"] * len(head), *body]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+_VIEWS = {"costs": _costs, "seconds": _seconds, "curves": _curves, "measures": _measures}

@@ -11,6 +11,7 @@ import numpy as np
 from auvgym._extras import require
 from auvgym.reproduction.card import Card, swept
 from auvgym.reproduction.cells import Cell, cells
+from auvgym.reproduction.measures import MEASURES
 from auvgym.reproduction.runs import Outcome, Run, checkpoints
 
 #: Colours that differ for colour-blind readers, too (Okabe and Ito 2008).
@@ -33,6 +34,8 @@ def draw(card: Card, outcomes: Mapping[Run, Outcome], seeds: int, folder: Path) 
     figures = require("matplotlib.figure", "report")
     if card.view == "sweeps":
         figure = _sweeps(figures, card, outcomes, seeds)
+    elif card.view == "measures":
+        figure = _measures(figures, card, cells(card, card.columns, outcomes, seeds))
     else:
         panel = {"costs": _boxes, "seconds": _bars, "curves": _lines}[card.view]
         figure = _panels(figures, card, cells(card, card.columns, outcomes, seeds), panel)
@@ -55,6 +58,31 @@ def _panels(figures: Any, card: Card, rows: list[list[Cell]], panel: Any) -> Any
         panel(axis, row)
     for index in range(len(rows), down * abreast):
         axes[index // abreast][index % abreast].set_visible(False)
+    figure.suptitle(card.title, fontsize=11)
+    return figure
+
+
+def _measures(figures: Any, card: Card, rows: list[list[Cell]]) -> Any:
+    """A panel for each measure: the columns' means case by case, the paper's figures as diamonds."""
+    figure = figures.Figure(figsize=(7.2, 2.9 * len(card.measures)), layout="constrained")
+    axes = figure.subplots(len(card.measures), 1, squeeze=False)[:, 0]
+    width = 0.8 / len(card.columns)
+    for axis, measure in zip(axes, card.measures, strict=True):
+        for index, column in enumerate(card.columns):
+            places = np.arange(len(rows)) - 0.4 + width * (index + 0.5)
+            heights = [np.mean(row[index].measured(measure)) for row in rows]
+            axis.bar(
+                places, heights, width, color=COLOURS[index % len(COLOURS)], label=column.label
+            )
+            paper = [row[0].case.paper.get(measure, [""] * len(row))[index] for row in rows]
+            known = [i for i, figure in enumerate(paper) if not isinstance(figure, str)]
+            axis.plot(places[known], [paper[i] for i in known], "D", color="black", ms=4)
+        axis.set_title(f"{MEASURES[measure]}; diamonds: paper", fontsize=9)
+        labels = [row[0].case.label for row in rows]
+        axis.set_xticks(range(len(rows)), labels, rotation=20, ha="right", fontsize=7)
+        axis.tick_params(axis="y", labelsize=8)
+        axis.grid(axis="y", alpha=0.3)
+    axes[0].legend(fontsize=7, frameon=False, ncols=2)
     figure.suptitle(card.title, fontsize=11)
     return figure
 

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import json
 import time
-from dataclasses import asdict, dataclass
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
 import numpy as np
 
 import auvgym
+from auvgym.reproduction.measures import of_path
+from auvgym.reproduction.rivals import random_search, raster_astar
+from auvgym.reproduction.threats import fly_among_threats
 
 #: Points of a convergence curve: evenly spaced in the logarithm of the evaluations.
 CURVE_POINTS = 24
-Protocol = Literal["plan", "phases"]
+Protocol = Literal["plan", "phases", "path", "threats"]
 
 
 @dataclass(frozen=True)
@@ -21,10 +25,12 @@ class Run:
     """What is run; two equal runs have equal outcomes, their time apart.
 
     Attributes:
-        protocol: "plan" plans once; "phases" is LFHH's experiment, see :func:`auvgym.run_phases`.
+        protocol: "plan" plans once; "phases" is LFHH's experiment, see :func:`auvgym.run_phases`;
+            "path" plans once and measures the path; "threats" flies among what moves.
         scenario: a shipped scenario.
         mission: its start/goal pair.
-        planner: a planner's name.
+        planner: a planner's name; for "path" also "raster-astar" and "random-search", for "threats"
+            "navigator".
         parameters: the planner's, as a JSON object with sorted keys.
         window: sections of the planning window, 0 for the whole rest of the path; for "phases".
         seed: of the planner's random streams.
@@ -49,6 +55,7 @@ class Outcome:
         evaluations: fitness evaluations spent.
         seconds: time of the run on this machine, the only figure that differs from run to run.
         curve: for "plan" the best cost after :func:`checkpoints` evaluations.
+        measures: for "path" and "threats" what is measured, by name.
     """
 
     cost: float
@@ -56,6 +63,7 @@ class Outcome:
     evaluations: int
     seconds: float
     curve: tuple[float, ...] = ()
+    measures: dict[str, float] = field(default_factory=dict)
 
     def to_dict(self) -> dict[str, Any]:
         """As JSON has it."""
@@ -75,7 +83,7 @@ def checkpoints(evaluations: int) -> np.ndarray[Any, np.dtype[np.int64]]:
 def execute(run: Run) -> Outcome | str:
     """The outcome of a run, or what went wrong in words; importable for other processes."""
     try:
-        return _phases(run) if run.protocol == "phases" else _plan(run)
+        return _PROTOCOLS[run.protocol](run)
     except ValueError as error:
         return str(error)
 
@@ -105,3 +113,43 @@ def _phases(run: Run) -> Outcome:
         evaluations=sum(phase.evaluations for phase in phases),
         seconds=seconds,
     )
+
+
+def _path(run: Run) -> Outcome:
+    world = auvgym.World(run.scenario, seed=run.seed, mission=run.mission)
+    parameters = json.loads(run.parameters)
+    objective = parameters.get("objective", {})
+    evaluations, feasible = 0, True
+    began = time.perf_counter()
+    if run.planner == "raster-astar":
+        path = raster_astar(world, **parameters)
+    else:
+        if run.planner == "random-search":
+            plan = random_search(world, run.seed, **parameters)
+            if plan is None:
+                raise auvgym.PlanningError(f"{run}: no line arrives")
+            evaluations = parameters["max_evaluations"]
+        else:
+            plan = auvgym.plan(world, run.planner, seed=run.seed, **parameters)
+            evaluations = plan.evaluations
+        path, feasible = plan.waypoints, plan.feasible
+    seconds = time.perf_counter() - began
+    measures = {**of_path(world, path, objective), "evaluations": float(evaluations)}
+    return Outcome(measures["objective"], feasible, evaluations, seconds, measures=measures)
+
+
+def _threats(run: Run) -> Outcome:
+    world = auvgym.World(run.scenario, seed=run.seed, mission=run.mission)
+    began = time.perf_counter()
+    measures = fly_among_threats(world, **json.loads(run.parameters))
+    seconds = time.perf_counter() - began
+    unharmed = measures["reached"] == 1.0 and measures["hits"] == 0.0
+    return Outcome(measures["length_km"], unharmed, 0, seconds, measures=measures)
+
+
+_PROTOCOLS: dict[str, Callable[[Run], Outcome]] = {
+    "plan": _plan,
+    "phases": _phases,
+    "path": _path,
+    "threats": _threats,
+}

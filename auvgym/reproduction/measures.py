@@ -1,0 +1,70 @@
+"""What is measured of a path, beside its cost."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import auvgym
+
+Array = NDArray[np.float64]
+
+#: Name -> what it is, in words.
+MEASURES = {
+    "length_km": "Length (km)",
+    "angle_rad": "Mean angle to the current (rad)",
+    "objective": "A = eta1 A1 + eta2 A2",
+    "clearance_km": "Least clearance (km), at least; negative inside",
+    "threat_km": "Least distance to a threat's surface (km); negative inside",
+    "hits": "Points of the path inside something solid",
+    "turn_deg": "Sharpest turn (degrees)",
+    "reached": "Share that arrived",
+    "evaluations": "Evaluations",
+    "step_us": "Time of a step (microseconds)",
+}
+#: Paths are looked at this often, m.
+_SPACING_M = 10.0
+_KM = 1e3
+
+
+def of_path(world: auvgym.World, path: Array, objective: dict[str, Any]) -> dict[str, float]:
+    """Measures of a path (n, 3) m through a world as it is now.
+
+    Args:
+        world: the world.
+        path: start, waypoints, goal.
+        objective: weights ``eta1`` and ``eta2`` of length (km) and mean angle (rad).
+    """
+    steps = np.diff(path, axis=0)
+    lengths = np.linalg.norm(steps, axis=1)
+    steps, middles = steps[lengths > 0.0], 0.5 * (path[1:] + path[:-1])[lengths > 0.0]
+    directions = steps / lengths[lengths > 0.0, None]
+    clearances = world.clearance(_resampled(path, lengths))
+    length_km, angle = float(lengths.sum()) / _KM, _angle(world, middles, directions)
+    cosines = np.sum(directions[1:] * directions[:-1], axis=1)
+    sharpest = np.arccos(np.clip(cosines, -1.0, 1.0)).max(initial=0.0)
+    return {
+        "length_km": length_km,
+        "angle_rad": angle,
+        "objective": objective.get("eta1", 1.0) * length_km + objective.get("eta2", 20.0) * angle,
+        "clearance_km": float(clearances.min()) / _KM,
+        "hits": float(np.count_nonzero(clearances <= 0.0)),
+        "turn_deg": float(np.rad2deg(sharpest)),
+    }
+
+
+def _resampled(path: Array, lengths: Array) -> Array:
+    along = np.concatenate([[0.0], np.cumsum(lengths)])
+    places = np.linspace(0.0, along[-1], max(int(along[-1] / _SPACING_M), 1) + 1)
+    return np.column_stack([np.interp(places, along, path[:, axis]) for axis in range(3)])
+
+
+def _angle(world: auvgym.World, middles: Array, directions: Array) -> float:
+    """A2 of eq. 22: the mean angle to the current; to water at rest a right one."""
+    current = world.current(middles)
+    speed = np.linalg.norm(current, axis=1)
+    cosines = np.zeros(len(speed))
+    np.divide(np.sum(current * directions, axis=1), speed, out=cosines, where=speed > 0.0)
+    return float(np.mean(np.arccos(np.clip(cosines, -1.0, 1.0))))

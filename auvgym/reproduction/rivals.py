@@ -1,0 +1,103 @@
+"""Rivals in papers that are no planners of ours: A* on a raster, and random search."""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import auvgym
+from auvgym.reproduction.measures import of_path
+
+Array = NDArray[np.float64]
+_NEIGHBOURS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]
+
+
+def raster_astar(world: auvgym.World, nodes: int = 100, heuristic: str = "manhattan") -> Array:
+    """A* over nodes x nodes points of the box at the start's depth, with eight neighbours.
+
+    Args:
+        world: the world.
+        nodes: along each side of the box.
+        heuristic: "manhattan", which overestimates where diagonals are allowed, or "octile".
+
+    Returns:
+        (n, 3) m.
+
+    Raises:
+        PlanningError: there is no way on the raster.
+    """
+    low, high = world.domain
+    xs, ys = (np.linspace(low[axis], high[axis], nodes) for axis in (0, 1))
+    points = np.array([[x, y, world.start[2]] for x in xs for y in ys])
+    free = (world.clearance(points) > 0.0).reshape(nodes, nodes)
+    start, goal = (
+        (int(np.abs(xs - end[0]).argmin()), int(np.abs(ys - end[1]).argmin()))
+        for end in (world.start, world.goal)
+    )
+
+    def left(node: tuple[int, int]) -> float:
+        a, b = sorted((abs(node[0] - goal[0]), abs(node[1] - goal[1])))
+        return float(a + b) if heuristic == "manhattan" else b + (np.sqrt(2.0) - 1.0) * a
+
+    order = itertools.count()
+    queue = [(left(start), next(order), start)]
+    spent, came = {start: 0.0}, {start: start}
+    closed: set[tuple[int, int]] = set()
+    while queue:
+        _, _, node = heapq.heappop(queue)
+        if node == goal:
+            return np.array([points[i * nodes + j] for i, j in _back(came, node)])
+        if node in closed:
+            continue
+        closed.add(node)
+        for i, j in _NEIGHBOURS:
+            other = (node[0] + i, node[1] + j)
+            if not (0 <= other[0] < nodes and 0 <= other[1] < nodes and free[other]):
+                continue
+            cost = spent[node] + float(np.hypot(i, j))
+            if other not in closed and cost < spent.get(other, np.inf):
+                spent[other], came[other] = cost, node
+                heapq.heappush(queue, (cost + left(other), next(order), other))
+    raise auvgym.PlanningError(f"{world.scenario.name}: no way on a raster of {nodes} x {nodes}")
+
+
+def _back(came: dict[tuple[int, int], tuple[int, int]], node: Any) -> list[tuple[int, int]]:
+    way = [node]
+    while came[node] != node:
+        node = came[node]
+        way.append(node)
+    return way[::-1]
+
+
+def random_search(
+    world: auvgym.World,
+    seed: int,
+    max_evaluations: int,
+    objective: dict[str, Any],
+    **parameters: Any,
+) -> auvgym.Plan | None:
+    """The best of so many lines with random coefficients, in the tuners' own bounds.
+
+    Args:
+        world: the world.
+        seed: of the draws.
+        max_evaluations: lines.
+        objective: ``eta1`` and ``eta2``.
+        **parameters: of ``iifds``, common to all lines.
+    """
+    random = np.random.default_rng(seed)
+    best, least = None, np.inf
+    for _ in range(max_evaluations):
+        rho, sigma = random.uniform(1.0, 3.0, 2)
+        coefficients = {"rho": rho, "sigma": sigma, "theta": random.uniform(0.0, np.pi)}
+        plan = auvgym.plan(
+            world, "iifds", **coefficients, **{"lambda": random.random()}, retry=False, **parameters
+        )
+        value = of_path(world, plan.waypoints, objective)["objective"] if plan.feasible else np.inf
+        if value < least:
+            best, least = plan, value
+    return best
