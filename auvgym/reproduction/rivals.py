@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import auvgym
-from auvgym.reproduction.measures import of_path
+from auvgym.reproduction.measures import flow_terms
 
 Array = NDArray[np.float64]
 _NEIGHBOURS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]
@@ -97,7 +97,9 @@ def random_search(
         plan = auvgym.plan(
             world, "iifds", **coefficients, **{"lambda": random.random()}, retry=False, **parameters
         )
-        value = of_path(world, plan.waypoints, objective)["objective"] if plan.feasible else np.inf
+        value = np.inf
+        if plan.feasible:
+            value = flow_terms(world, plan.waypoints, objective)["objective"]
         if value < least:
             best, least = plan, value
     return best
