@@ -230,6 +230,7 @@ class SectionProblem:
     def evaluate(self, genes: NDArray[np.float64]) -> NDArray[np.float64]: ...
     def path(self, genes: NDArray[np.float64]) -> NDArray[np.float64]: ...
 
+@final
 class Navigator:
     """A vehicle's way from start to goal among threats that it sees."""
 

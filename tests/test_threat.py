@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import pickle
+from pathlib import Path
 from typing import Any
 
 import gymnasium
@@ -15,6 +16,9 @@ from small_worlds import open_water, sphere, vortices
 import auvgym
 from auvgym import Scenario, policies
 from auvgym.navigation import navigator
+from auvgym.reproduction import Outcome, list_cards, load_card, write_card
+from auvgym.reproduction.measures import of_path
+from auvgym.reproduction.runs import execute
 
 Array = npt.NDArray[Any]
 
@@ -223,3 +227,71 @@ def test_wrong_parameters_are_named() -> None:
             pilot.see((1.0, 2.0, 3.0), radius, 0.0)
     with pytest.raises(ValueError, match=r"position\[1\]"):
         pilot.course((0.0, float("inf"), 0.0), 0.0, 1.0)
+
+
+# --- The paper's cards ---------------------------------------------------------------------------
+
+
+def outcome(card: str, column: str, case: int) -> Any:
+    """One run of a card's cell."""
+    loaded = load_card(card)
+    (found,) = (one for one in loaded.columns if one.label == column)
+    done = execute(loaded.run(loaded.cases[case], found, 0))
+    assert not isinstance(done, str), done
+    return done
+
+
+def test_columns_make_a_raster_search_turn_and_the_flow_bend() -> None:
+    flow, raster, octile = (
+        outcome("iifds-astar", column, 0)
+        for column in ("IIFDS, as printed", "A*, Manhattan", "A*, octile")
+    )
+    # The field was searched for so that these are the paper's 15 and 16.8 km.
+    assert flow.measures["length_km"] == pytest.approx(15.0, abs=0.01)
+    assert raster.measures["length_km"] == pytest.approx(16.8, abs=0.01)
+    assert octile.measures["length_km"] == pytest.approx(15.385, abs=0.01)
+    assert flow.measures["turn_deg"] < 1.0
+    assert raster.measures["turn_deg"] == pytest.approx(45.0)
+    assert flow.measures["hits"] == raster.measures["hits"] == 0.0
+
+
+def test_as_printed_the_flow_runs_into_threats_that_the_recommended_one_avoids() -> None:
+    # Least distances and lengths of an independent implementation, km.
+    for case, (gap, length) in {0: (0.912, 14.84), 1: (0.979, 14.89), 5: (-0.020, None)}.items():
+        printed = outcome("iifds-threats", "as printed", case)
+        assert printed.measures["threat_km"] == pytest.approx(gap, abs=0.005)
+        assert length is None or printed.measures["length_km"] == pytest.approx(length, abs=0.01)
+        assert printed.feasible == (gap > 0.0)
+        mended = outcome("iifds-threats", "recommended", case)
+        assert mended.feasible
+        assert mended.measures["threat_km"] > printed.measures["threat_km"]
+
+
+def test_measures_by_hand() -> None:
+    east = {"kind": "uniform", "velocity_mps": [1.0, 0.0]}
+    rock = sphere([3_000, 0, 2_000], 500.0)
+    world = auvgym.World(Scenario.from_dict(open_water(3, currents=[east], obstacles=[rock])))
+    path = np.array([[0, 0, 2e3], [3e3, 0, 2e3], [3e3, 4e3, 2e3]], dtype=np.float64)
+    told = of_path(world, path, {"eta1": 2.0, "eta2": 10.0})
+    assert told["length_km"] == pytest.approx(7.0)
+    assert told["angle_rad"] == pytest.approx(np.pi / 4)
+    assert told["objective"] == pytest.approx(14.0 + 2.5 * np.pi)
+    assert told["turn_deg"] == pytest.approx(90.0)
+    assert told["clearance_km"] == pytest.approx(-0.5)
+    assert told["hits"] == pytest.approx(101, abs=2)
+
+
+def test_every_card_can_be_written(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    for name in list_cards():
+        card = load_card(name)
+        if card.view != "measures":
+            continue
+        measures = dict.fromkeys(card.measures, 1.0)
+        outcomes = {run: Outcome(1.0, True, 10, 0.1, measures=measures) for run in card.runs(2)}
+        text = write_card(card, outcomes, 2, tmp_path).read_text(encoding="utf-8")
+        for one in (*card.columns, *card.cases):
+            assert one.label in text
+        for case in card.cases:
+            assert all(len(figures) == len(card.columns) for figures in case.paper.values())
+            assert set(case.paper) <= set(card.measures)

@@ -39,32 +39,35 @@ def of_path(world: auvgym.World, path: Array, objective: dict[str, Any]) -> dict
     """
     steps = np.diff(path, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
-    steps, middles = steps[lengths > 0.0], 0.5 * (path[1:] + path[:-1])[lengths > 0.0]
-    directions = steps / lengths[lengths > 0.0, None]
+    directions = steps[lengths > 0.0] / lengths[lengths > 0.0, None]
     clearances = world.clearance(_resampled(path, lengths))
-    length_km, angle = float(lengths.sum()) / _KM, _angle(world, middles, directions)
     cosines = np.sum(directions[1:] * directions[:-1], axis=1)
     sharpest = np.arccos(np.clip(cosines, -1.0, 1.0)).max(initial=0.0)
     return {
-        "length_km": length_km,
-        "angle_rad": angle,
-        "objective": objective.get("eta1", 1.0) * length_km + objective.get("eta2", 20.0) * angle,
+        **flow_terms(world, path, objective),
         "clearance_km": float(clearances.min()) / _KM,
         "hits": float(np.count_nonzero(clearances <= 0.0)),
         "turn_deg": float(np.rad2deg(sharpest)),
     }
 
 
+def flow_terms(world: auvgym.World, path: Array, objective: dict[str, Any]) -> dict[str, float]:
+    """Eq. 20-22: length, mean angle to the current (in still water a right one), and their sum."""
+    steps = np.diff(path, axis=0)
+    lengths = np.linalg.norm(steps, axis=1)
+    moved = lengths > 0.0
+    current = world.current(0.5 * (path[1:] + path[:-1])[moved])
+    product = lengths[moved] * np.linalg.norm(current, axis=1)
+    cosines = np.zeros(len(product))
+    along = np.sum(current * steps[moved], axis=1)
+    np.divide(along, product, out=cosines, where=product > 0.0)
+    length_km = float(lengths.sum()) / _KM
+    angle = float(np.mean(np.arccos(np.clip(cosines, -1.0, 1.0))))
+    total = objective.get("eta1", 1.0) * length_km + objective.get("eta2", 20.0) * angle
+    return {"length_km": length_km, "angle_rad": angle, "objective": total}
+
+
 def _resampled(path: Array, lengths: Array) -> Array:
     along = np.concatenate([[0.0], np.cumsum(lengths)])
     places = np.linspace(0.0, along[-1], max(int(along[-1] / _SPACING_M), 1) + 1)
     return np.column_stack([np.interp(places, along, path[:, axis]) for axis in range(3)])
-
-
-def _angle(world: auvgym.World, middles: Array, directions: Array) -> float:
-    """A2 of eq. 22: the mean angle to the current; to water at rest a right one."""
-    current = world.current(middles)
-    speed = np.linalg.norm(current, axis=1)
-    cosines = np.zeros(len(speed))
-    np.divide(np.sum(current * directions, axis=1), speed, out=cosines, where=speed > 0.0)
-    return float(np.mean(np.arccos(np.clip(cosines, -1.0, 1.0))))

@@ -63,7 +63,7 @@ def _panels(figures: Any, card: Card, rows: list[list[Cell]], panel: Any) -> Any
 
 
 def _measures(figures: Any, card: Card, rows: list[list[Cell]]) -> Any:
-    """A panel for each measure: the columns' means case by case, the paper's figures as diamonds."""
+    """A panel for each measure: means case by case, the paper's figures as diamonds."""
     figure = figures.Figure(figsize=(7.2, 2.9 * len(card.measures)), layout="constrained")
     axes = figure.subplots(len(card.measures), 1, squeeze=False)[:, 0]
     width = 0.8 / len(card.columns)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import auvgym
-from auvgym.reproduction.measures import of_path
+from auvgym.reproduction.measures import flow_terms
 
 Array = NDArray[np.float64]
 _NEIGHBOURS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]
@@ -93,11 +93,12 @@ def random_search(
     best, least = None, np.inf
     for _ in range(max_evaluations):
         rho, sigma = random.uniform(1.0, 3.0, 2)
-        coefficients = {"rho": rho, "sigma": sigma, "theta": random.uniform(0.0, np.pi)}
-        plan = auvgym.plan(
-            world, "iifds", **coefficients, **{"lambda": random.random()}, retry=False, **parameters
-        )
-        value = of_path(world, plan.waypoints, objective)["objective"] if plan.feasible else np.inf
+        theta, blend = random.uniform(0.0, np.pi), random.random()
+        drawn: dict[str, Any] = {"rho": rho, "sigma": sigma, "theta": theta, "lambda": blend}
+        plan = auvgym.plan(world, "iifds", **drawn, retry=False, **parameters)
+        value = np.inf
+        if plan.feasible:
+            value = flow_terms(world, plan.waypoints, objective)["objective"]
         if value < least:
             best, least = plan, value
     return best
