@@ -165,10 +165,7 @@ def load_card(name: str) -> Card:
         raise CardError(unknown("card", name, list_cards()))
     data = tomllib.loads((_FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
     columns = tuple(Column(**column) for column in data.pop("columns"))
-    cases = tuple(
-        Case(**{key: tuple(value) if isinstance(value, list) else value for key, value in case.items()})
-        for case in data.pop("cases")
-    )
+    cases = tuple(_case(case) for case in data.pop("cases"))
     sweeps = tuple(Sweep(**sweep) for sweep in data.pop("sweeps", []))
     measures = tuple(data.pop("measures", []))
     card = Card(
@@ -180,3 +177,10 @@ def load_card(name: str) -> Card:
         if measure not in MEASURES:
             raise CardError(f"card {name}: {unknown('measure', measure, list(MEASURES))}")
     return card
+
+
+def _case(data: dict[str, Any]) -> Case:
+    made: dict[str, Any] = {}
+    for key, one in data.items():
+        made[key] = tuple(one) if isinstance(one, list) else one
+    return Case(**made)
