@@ -52,7 +52,7 @@ def of_path(world: auvgym.World, path: Array, objective: dict[str, Any]) -> dict
 
 
 def flow_terms(world: auvgym.World, path: Array, objective: dict[str, Any]) -> dict[str, float]:
-    """Eq. 20-22: length, mean angle to the current (in still water a right one), and their sum."""
+    """Eq. 20-22: length, mean angle to the current (to still water a right one), and the sum."""
     steps = np.diff(path, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
     moved = lengths > 0.0

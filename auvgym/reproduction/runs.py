@@ -12,7 +12,7 @@ import numpy as np
 
 import auvgym
 from auvgym.reproduction.measures import of_path
-from auvgym.reproduction.rivals import random_search, raster_astar
+from auvgym.reproduction.raster_astar import raster_astar
 from auvgym.reproduction.threats import fly_among_threats
 
 #: Points of a convergence curve: evenly spaced in the logarithm of the evaluations.
@@ -29,8 +29,7 @@ class Run:
             "path" plans once and measures the path; "threats" flies among what moves.
         scenario: a shipped scenario.
         mission: its start/goal pair.
-        planner: a planner's name; for "path" also "raster-astar" and "random-search", for "threats"
-            "navigator".
+        planner: a planner's name; for "path" also "raster-astar", for "threats" "navigator".
         parameters: the planner's, as a JSON object with sorted keys.
         window: sections of the planning window, 0 for the whole rest of the path; for "phases".
         seed: of the planner's random streams.
@@ -124,15 +123,8 @@ def _path(run: Run) -> Outcome:
     if run.planner == "raster-astar":
         path = raster_astar(world, **parameters)
     else:
-        if run.planner == "random-search":
-            plan = random_search(world, run.seed, **parameters)
-            if plan is None:
-                raise auvgym.PlanningError(f"{run}: no line arrives")
-            evaluations = parameters["max_evaluations"]
-        else:
-            plan = auvgym.plan(world, run.planner, seed=run.seed, **parameters)
-            evaluations = plan.evaluations
-        path, feasible = plan.waypoints, plan.feasible
+        plan = auvgym.plan(world, run.planner, seed=run.seed, **parameters)
+        path, feasible, evaluations = plan.waypoints, plan.feasible, plan.evaluations
     seconds = time.perf_counter() - began
     measures = {**of_path(world, path, objective), "evaluations": float(evaluations)}
     return Outcome(measures["objective"], feasible, evaluations, seconds, measures=measures)

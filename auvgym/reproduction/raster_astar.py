@@ -1,4 +1,4 @@
-"""Rivals in papers that are no planners of ours: A* on a raster, and random search."""
+"""A rival in a paper that is no planner of ours: A* on a raster."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 import auvgym
-from auvgym.reproduction.measures import flow_terms
 
 Array = NDArray[np.float64]
 _NEIGHBOURS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]
@@ -71,34 +70,3 @@ def _back(came: dict[tuple[int, int], tuple[int, int]], node: Any) -> list[tuple
         node = came[node]
         way.append(node)
     return way[::-1]
-
-
-def random_search(
-    world: auvgym.World,
-    seed: int,
-    max_evaluations: int,
-    objective: dict[str, Any],
-    **parameters: Any,
-) -> auvgym.Plan | None:
-    """The best of so many lines with random coefficients, in the tuners' own bounds.
-
-    Args:
-        world: the world.
-        seed: of the draws.
-        max_evaluations: lines.
-        objective: ``eta1`` and ``eta2``.
-        **parameters: of ``iifds``, common to all lines.
-    """
-    random = np.random.default_rng(seed)
-    best, least = None, np.inf
-    for _ in range(max_evaluations):
-        rho, sigma = random.uniform(1.0, 3.0, 2)
-        theta, blend = random.uniform(0.0, np.pi), random.random()
-        drawn: dict[str, Any] = {"rho": rho, "sigma": sigma, "theta": theta, "lambda": blend}
-        plan = auvgym.plan(world, "iifds", **drawn, retry=False, **parameters)
-        value = np.inf
-        if plan.feasible:
-            value = flow_terms(world, plan.waypoints, objective)["objective"]
-        if value < least:
-            best, least = plan, value
-    return best
