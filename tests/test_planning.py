@@ -64,12 +64,14 @@ def test_a_larger_budget_goes_on_from_a_smaller_one(planner: str) -> None:
     assert totals[-1] < totals[0]
 
 
-@pytest.mark.parametrize("planner", ["lfhh", "astar"])
+@pytest.mark.parametrize(("planner", "parameters"), [("lfhh", {"generations": 600}), ("astar", {})])
 @pytest.mark.parametrize("dimensions", [2, 3])
-def test_other_obstacles_are_gone_round(planner: str, dimensions: int) -> None:
+def test_other_obstacles_are_gone_round(
+    planner: str, parameters: dict[str, Any], dimensions: int
+) -> None:
     ocean = world(dimensions, obstacles=other_obstacles())
     assert auvgym.path_cost(ocean, [ocean.start, ocean.goal])["block"] > 2
-    options: dict[str, Any] = {"cost_options": {"collision": "segment"}}
+    options: dict[str, Any] = {"cost_options": {"collision": "segment"}, **parameters}
     # LFHH does not find its way at every attempt.
     plans = (auvgym.plan(ocean, planner, seed=seed, **options) for seed in range(4))
     plan = next(plan for plan in plans if plan.feasible)

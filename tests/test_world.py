@@ -29,6 +29,7 @@ from small_worlds import (
 import auvgym
 from auvgym import Scenario, ScenarioError, World
 
+SHIPPED = auvgym.list_scenarios()
 RANDOM = np.random.default_rng(1)
 POINTS = RANDOM.random((500, 3)) * [WIDTH, LENGTH, DEPTH]
 FLAT_POINTS = POINTS * [1, 1, 0]
@@ -482,9 +483,17 @@ def obstacle_places(world: World) -> Array:
     return np.array([obstacle["position_m"] for obstacle in world.snapshot()["obstacles"]])
 
 
+# Families whose maps change, and how to ask for it.
+CHANGING: dict[str, dict[str, Any]] = {
+    "lfhh-2d": {},
+    "lfhh-3d": {},
+    "afhh": {"change_every_m": 6.0},
+}
+
+
 @quick
 @given(
-    family=st.sampled_from(["lfhh-2d", "lfhh-3d"]),
+    family=st.sampled_from(list(CHANGING)),
     seed=st.integers(0, 10_000),
     part=st.floats(0, 1),
     changes=st.integers(1, 4),
@@ -493,7 +502,9 @@ def obstacle_places(world: World) -> Array:
 def test_a_change_holds_its_margin(
     family: str, seed: int, part: float, changes: int, speed: float
 ) -> None:
-    drawn = World(Scenario.generate(family, seed, obstacle_speed_mps=speed), seed=seed)
+    scenario = Scenario.generate(family, seed, obstacle_speed_mps=speed, **CHANGING[family])
+    margin_m = scenario.to_dict()["change"]["hold_margin_m"]
+    drawn = World(scenario, seed=seed)
     flat = drawn.dimensions == 2
     radii = np.array([obstacle["radius_m"] for obstacle in drawn.snapshot()["obstacles"]])
     moved = 0
@@ -510,7 +521,7 @@ def test_a_change_holds_its_margin(
             if flat:
                 offset = offset[:, :2]
             apart = np.linalg.norm(offset, axis=1) - radii
-            assert np.all(apart[jumped] >= 900.0 - 1e-9)
+            assert np.all(apart[jumped] >= margin_m - 1e-9)
         low, high = drawn.domain
         assert np.all((after >= low) & (after <= high))
     assert moved > changes * len(radii) / 2
@@ -541,7 +552,7 @@ def test_seeds_decide_what_a_change_draws() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", [name for name in auvgym.list_scenarios() if name.startswith("lfhh")]
+    "name", [name for name in SHIPPED if "change" in World(name).scenario.to_dict()]
 )
 def test_the_shipped_maps_change_as_their_tables_say(name: str) -> None:
     shipped = World(name)
@@ -622,22 +633,24 @@ def test_copies_go_on_identically(way: str, name: str) -> None:
 
 
 def test_a_snapshot_is_plain_and_complete() -> None:
-    for name in auvgym.list_scenarios():
-        shipped = World(name)
+    for name in SHIPPED:
+        last = World(name).scenario.missions - 1
+        shipped = World(name, mission=last)
         snapshot, file = shipped.snapshot(), shipped.scenario.to_dict()
         assert json.loads(json.dumps(snapshot)) == snapshot
         assert len(snapshot["obstacles"]) == len(file["obstacles"])
-        fields = [c for c in file.get("currents", []) if c["kind"] == "vortices"]
+        assert snapshot["peaks"] == file.get("seabed", {}).get("peaks", [])
         told = [
-            (field["core_radius_m"], vortex) for field in fields for vortex in field["vortices"]
+            (vortex["circulation_m2ps"], current["core_radius_m"])
+            for current in file.get("currents", [])
+            for vortex in current.get("vortices", [])
         ]
-        assert len(snapshot["vortices"]) == len(told)
-        if file.get("seabed", {}).get("kind") == "peaks":
-            assert snapshot["peaks"] == file["seabed"]["peaks"]
-        for vortex, (core_m, wanted) in zip(snapshot["vortices"], told, strict=True):
-            assert vortex["circulation_m2ps"] == pytest.approx(wanted["circulation_m2ps"])
-            assert vortex["core_radius_m"] == pytest.approx(core_m)
-        assert snapshot["start_m"] == shipped.start.tolist() == file["missions"][0]["start_m"]
+        found = [
+            (vortex["circulation_m2ps"], vortex["core_radius_m"]) for vortex in snapshot["vortices"]
+        ]
+        assert np.allclose(found, told)
+        assert len(found) == len(told)
+        assert snapshot["start_m"] == shipped.start.tolist() == file["missions"][last]["start_m"]
         assert snapshot["goal_m"] == shipped.goal.tolist()
 
 

@@ -251,21 +251,6 @@ fn a_level_floor_is_a_wall() {
 }
 
 #[test]
-fn a_walled_off_goal_has_no_clear_line() {
-    let mut scenario = scenario("lfhh-2d-1");
-    scenario.change = None;
-    let vertices_m = vec![[-1e3, 20e3], [21e3, 20e3], [21e3, 21e3], [-1e3, 21e3]];
-    let velocity_mps = [0.0; 2];
-    scenario.obstacles.push(Obstacle::Polygon(Polygon { vertices_m, top_m: -1.0, bottom_m: 1.0, velocity_mps }));
-    let world = World::new(scenario, 0, 0).unwrap();
-    for planner in PLANNERS {
-        let found = ask(planner, &world, 0, r#"{"max_evaluations": 5}"#);
-        assert!(!found.feasible && found.cost.block > 2.0 && found.evaluations == 5);
-        check(&world, &found, ends(&world), Cost::Lfhh, &CostOptions::default());
-    }
-}
-
-#[test]
 fn interruption_gives_the_best_so_far() {
     let world = world("lfhh-3d-1");
     let [start, goal] = ends(&world);

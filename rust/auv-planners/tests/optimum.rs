@@ -39,7 +39,7 @@ fn check(world: &World, plan: &Plan, cost: Cost, options: &CostOptions) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 10, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 8, ..ProptestConfig::default() })]
 
     #[test]
     fn plans_keep_their_promises(
@@ -52,7 +52,7 @@ proptest! {
         let world = World::new(generate(family, seed, &Parameters::default()).unwrap(), seed, 0).unwrap();
         let options = CostOptions { margin_m, ..CostOptions::default() };
         let own = format!(
-            r#""lateral_m": 800, "depth_m": 1500, "cost": "{cost}", "cost_options": {{"margin_m": {margin_m}}}"#
+            r#""lateral_m": 1500, "depth_m": 3000, "cost": "{cost}", "cost_options": {{"margin_m": {margin_m}}}"#
         );
         let found = ask(&world, &format!(r#"{{{own}, "max_evaluations": {budget}}}"#));
         check(&world, &found, Cost::from_name(cost).unwrap(), &options);
@@ -88,7 +88,7 @@ fn nobody_is_better_at_the_other_costs() {
             let best = ask(&world, &format!(r#"{{"cost": "{cost}"}}"#));
             check(&world, &best, Cost::from_name(cost).unwrap(), &CostOptions::default());
             assert!(best.feasible, "{name} {cost}");
-            let parameters = format!(r#"{{"cost": "{cost}", "max_evaluations": 30000, "stop": "exhaust"}}"#);
+            let parameters = format!(r#"{{"cost": "{cost}", "max_evaluations": 10000, "stop": "exhaust"}}"#);
             let theirs = ask_with(planner, &world, &parameters, &Control::none());
             assert!(best.cost.total < theirs.cost.total, "{name} {cost}: {} {}", best.cost.total, theirs.cost.total);
         }

@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use auv_planners::{Control, Cost, CostOptions, Plan, path_cost, plan};
 use auv_world::families::{Parameters, generate};
@@ -262,24 +261,6 @@ fn the_first_path_may_suffice() {
         assert!(whole.cost.path_length_m < first.cost.path_length_m);
         let target = format!(r#"{{"target_cost": {}}}"#, whole.history[0].1);
         assert!(ask(name, &world, 0, &target).evaluations < 20_000);
-    }
-}
-
-#[test]
-fn interruption_gives_the_best_so_far() {
-    let world = disc_world();
-    let mission = world.mission();
-    for name in PLANNERS {
-        let asked = AtomicU64::new(0);
-        let question = || asked.fetch_add(1, Ordering::Relaxed) >= 60;
-        let parameters = r#"{"max_evaluations": 1000000000}"#;
-        let control = Control::ask(&question);
-        let found = plan(name, &world, mission.start_m, mission.goal_m, 2, parameters, &control).unwrap();
-        assert!(found.interrupted && found.feasible && found.evaluations == 61 * 32);
-        check(&world, &found, mission.start_m, mission.goal_m, Cost::Lfhh);
-        // What came before the interruption is what an equal budget gives.
-        let budget = format!(r#"{{"max_evaluations": {}}}"#, found.evaluations);
-        assert_eq!(ask(name, &world, 2, &budget), Plan { interrupted: false, ..found });
     }
 }
 
