@@ -1,0 +1,19 @@
+//! Harbours: planning among polygons on MAKLINK graphs, after Huang and Jin (2021).
+//!
+//! Obstacles become convex danger zones ([`zone`]), free links between them cut the water into convex cells
+//! ([`links`], [`cells`]), and a route is a sequence of links ([`route`]). Where on its link each waypoint lies
+//! is then a convex problem, of which [`funnel`] knows the exact answer.
+
+pub mod area;
+pub mod cells;
+pub mod chart;
+pub mod error;
+pub mod funnel;
+pub mod links;
+pub mod route;
+pub mod visibility;
+pub mod zone;
+
+pub use area::Area;
+pub use chart::Chart;
+pub use error::MapError;
