@@ -6,7 +6,7 @@ use super::area::Area;
 use super::cells::{Cell, cells};
 use super::error::MapError;
 use super::links::{Link, links};
-use super::zone::{Zone, zones};
+use super::zone::{Zone, hulls, zones};
 
 /// A map of polygons made ready for planning.
 ///
@@ -15,6 +15,7 @@ use super::zone::{Zone, zones};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
     area: Area,
+    hulls: Vec<Zone>,
     zones: Vec<Zone>,
     links: Vec<Link>,
     cells: Vec<Cell>,
@@ -49,7 +50,7 @@ impl Chart {
             let point = links[lost / 2].middle();
             return Err(MapError::Degenerate { point, reason: "a link bounds no cell" });
         }
-        Ok(Self { area, zones, links, cells, leaves })
+        Ok(Self { area, hulls: hulls(&area, polygons), zones, links, cells, leaves })
     }
 
     /// The area.
@@ -115,12 +116,13 @@ impl Chart {
         }
     }
 
-    /// The nearest point that is in the area and in no zone; `None` if zones fill the area.
+    /// The nearest point that is in the area and in no zone, to which nothing solid bars the way if there is
+    /// such a point; `None` if zones fill the area.
     pub fn nearest_free(&self, point: Vec2) -> Option<Vec2> {
         let inside = self.area.nearest(point);
-        match self.zones.iter().find(|zone| zone.contains(inside)) {
-            Some(zone) => zone.way_out(inside, &self.area),
-            None => Some(inside),
-        }
+        let Some(zone) = self.zones.iter().find(|zone| zone.contains(inside)) else { return Some(inside) };
+        let exits = zone.ways_out(inside, &self.area);
+        let open = |exit: &&Vec2| !self.hulls.iter().any(|hull| hull.meets(inside, **exit));
+        exits.iter().find(open).or(exits.first()).copied()
     }
 }

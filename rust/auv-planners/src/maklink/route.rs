@@ -96,7 +96,8 @@ impl<'a> Routes<'a> {
                 let tried = found.iter().map(|route| &route.crossings);
                 let closed: Vec<usize> =
                     tried.filter(|way| way.starts_with(root)).filter_map(|way| way.get(place).copied()).collect();
-                let entered: Vec<usize> = root.iter().map(|&crossing| self.chart.enters(crossing)).collect();
+                let entered = root.iter().map(|&crossing| self.chart.enters(crossing));
+                let entered: Vec<usize> = entered.chain(self.starts.iter().copied()).collect();
                 if let Some(route) = self.search(root, &closed, &entered) {
                     if !others.contains(&route) && !found.contains(&route) {
                         others.push(route);
@@ -136,7 +137,7 @@ impl<'a> Routes<'a> {
         // A route does not come back to where it began, nor to the cells of its root.
         let barred = |crossing: usize| {
             let cell = chart.enters(crossing);
-            first.contains(&cell) && !first.contains(&chart.leaves(crossing)) || entered.contains(&cell)
+            first.contains(&cell) || entered.contains(&cell)
         };
         for &side in first.iter().flat_map(|&cell| &chart.cells()[cell].sides) {
             let so_far = begun + distance(from, middle(side));

@@ -96,16 +96,14 @@ impl Zone {
         from < to
     }
 
-    /// The nearest point of its boundary inside the area, for a point inside the zone.
-    pub fn way_out(&self, point: Vec2, area: &Area) -> Option<Vec2> {
+    /// The nearest points of its edges to a point inside, nearest first; those at the walls lead nowhere.
+    pub fn ways_out(&self, point: Vec2, area: &Area) -> Vec<Vec2> {
         let n = self.corners.len();
-        let exits = (0..n).filter_map(|i| {
-            let (a, b) = (self.corners[i], self.corners[(i + 1) % n]);
-            let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-            // Beyond an edge on the wall there is nothing.
-            (!area.on_wall(middle)).then(|| nearest_on(a, b, point))
-        });
-        exits.min_by(|p, q| square(*p, point).total_cmp(&square(*q, point)))
+        let edges = (0..n).map(|i| (self.corners[i], self.corners[(i + 1) % n]));
+        let inner = edges.filter(|(a, b)| !area.on_wall([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]));
+        let mut exits: Vec<Vec2> = inner.map(|(a, b)| nearest_on(a, b, point)).collect();
+        exits.sort_by(|p, q| square(*p, point).total_cmp(&square(*q, point)));
+        exits
     }
 
     /// Whether two zones overlap or touch: no edge of either parts them.
@@ -143,6 +141,12 @@ pub fn zones(area: &Area, polygons: &[Vec<Vec2>], distance: f64, mitre_limit: f6
     merge(&mut zones);
     zones.sort_by(|a, b| a.corners[0][0].total_cmp(&b.corners[0][0]).then(a.corners[0][1].total_cmp(&b.corners[0][1])));
     Ok(zones)
+}
+
+/// The hulls of the polygons themselves, in the area.
+pub fn hulls(area: &Area, polygons: &[Vec<Vec2>]) -> Vec<Zone> {
+    let hulls = polygons.iter().enumerate();
+    hulls.filter_map(|(index, polygon)| Zone::around(&area.clip(hull(polygon)), vec![index])).collect()
 }
 
 /// Puts zones that overlap or touch into the hull of both, until none do.
