@@ -3,6 +3,8 @@
 
 #[path = "harbor/maps.rs"]
 mod maps;
+#[path = "harbor/studies.rs"]
+mod studies;
 
 use auv_planners::maklink::funnel::taut;
 use auv_planners::maklink::route::{Route, Routes, length};

@@ -18,6 +18,7 @@ mod planners;
 pub mod route;
 mod search;
 pub mod settings;
+pub mod smoothing;
 pub mod swarm;
 pub mod visibility;
 pub mod zone;
