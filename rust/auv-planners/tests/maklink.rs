@@ -182,7 +182,7 @@ fn polygons_that_are_none_are_named() {
     // Corners that come twice, or lie on an edge, do no harm.
     let plain = rectangle([100.0, 100.0], [20.0, 20.0]);
     let twice = vec![plain[0], plain[0], [110.0, 100.0], plain[1], plain[2], [105.0, 111.0], plain[3], plain[3]];
-    assert_eq!(maps::chart(&vec![plain]).zones()[0].corners(), maps::chart(&vec![twice]).zones()[0].corners());
+    assert_eq!(maps::chart(&[plain]).zones()[0].corners(), maps::chart(&[twice]).zones()[0].corners());
 }
 
 #[test]

@@ -88,7 +88,7 @@ impl Chart {
     /// The ends of the link on the left and on the right hand of who crosses it.
     pub fn hands(&self, crossing: usize) -> [Vec2; 2] {
         let [first, second] = self.links[crossing / 2].ends;
-        if crossing % 2 == 0 { [second, first] } else { [first, second] }
+        if crossing.is_multiple_of(2) { [second, first] } else { [first, second] }
     }
 
     /// The cells that hold a point: several if it is on a link.

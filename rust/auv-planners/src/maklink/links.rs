@@ -85,14 +85,15 @@ impl Corner {
         let angle = self.angle_to(point);
         let place = self.links.partition_point(|other| *other < angle);
         self.links.insert(place, angle);
-        if let Some([from, to]) = self.reflex {
-            if from < angle && angle < to {
-                self.reflex = [[from, angle], [angle, to]].into_iter().find(is_reflex);
-            }
+        if let Some([from, to]) = self.reflex
+            && from < angle
+            && angle < to
+        {
+            self.reflex = [[from, angle], [angle, to]].into_iter().find(is_reflex);
         }
     }
 
-    /// Takes a link away if no reflex gap opens.
+    /// Whether no reflex gap opens without that link.
     fn may_remove(&self, point: Vec2, area: &Area) -> bool {
         if area.on_wall(self.point) {
             return true;

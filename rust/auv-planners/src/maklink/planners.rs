@@ -106,7 +106,7 @@ fn plan_swarm(request: &Request<'_>, inertia: Inertia) -> Result<Plan, PlanError
     let counted = search.left().min(size as u64);
     let mut swarm = Swarm::new(&corridor, settings.rules(inertia, iterations), size, counted as usize, &mut random);
     search.count(counted);
-    let mut held = hold(&mut search, &corridor, swarm.best(), swarm.best_cost(), true);
+    let mut held = hold(&mut search, &corridor, swarm.best(), swarm.best_cost());
     let mut generation = 0;
     while !search.end_generation() && generation < generations {
         let counted = search.left().min(size as u64);
@@ -114,11 +114,11 @@ fn plan_swarm(request: &Request<'_>, inertia: Inertia) -> Result<Plan, PlanError
         search.count(counted);
         generation += 1;
         if swarm.best_cost() < held && search.is_worth_holding(swarm.best_cost()) {
-            held = hold(&mut search, &corridor, swarm.best(), swarm.best_cost(), true);
+            held = hold(&mut search, &corridor, swarm.best(), swarm.best_cost());
         }
     }
     if swarm.best_cost() < held {
-        hold(&mut search, &corridor, swarm.best(), swarm.best_cost(), true);
+        hold(&mut search, &corridor, swarm.best(), swarm.best_cost());
     }
     Ok(search.finish())
 }
@@ -142,20 +142,20 @@ pub fn plan_maklink_aco(request: &Request<'_>) -> Result<Plan, PlanError> {
         colony.step(ants as usize, &mut random);
         search.count(ants);
         if search.is_worth_holding(colony.best_cost()) {
-            held = hold(&mut search, &corridor, colony.best(), colony.best_cost(), true);
+            held = hold(&mut search, &corridor, colony.best(), colony.best_cost());
         }
         if search.end_generation() {
             break;
         }
     }
     if colony.best_cost() < held {
-        hold(&mut search, &corridor, colony.best(), colony.best_cost(), true);
+        hold(&mut search, &corridor, colony.best(), colony.best_cost());
     }
     Ok(search.finish())
 }
 
 /// Holds the path of some positions; gives back what it costs the planner.
-fn hold(search: &mut Search<'_>, corridor: &Corridor<'_>, positions: &[f64], cost: f64, free: bool) -> f64 {
-    search.hold(&corridor.path(positions.iter().copied()), cost, free);
+fn hold(search: &mut Search<'_>, corridor: &Corridor<'_>, positions: &[f64], cost: f64) -> f64 {
+    search.hold(&corridor.path(positions.iter().copied()), cost, true);
     cost
 }

@@ -98,11 +98,8 @@ impl<'a> Routes<'a> {
                     tried.filter(|way| way.starts_with(root)).filter_map(|way| way.get(place).copied()).collect();
                 let entered = root.iter().map(|&crossing| self.chart.enters(crossing));
                 let entered: Vec<usize> = entered.chain(self.starts.iter().copied()).collect();
-                if let Some(route) = self.search(root, &closed, &entered) {
-                    if !others.contains(&route) && !found.contains(&route) {
-                        others.push(route);
-                    }
-                }
+                let next = self.search(root, &closed, &entered);
+                others.extend(next.filter(|route| !others.contains(route) && !found.contains(route)));
             }
             let best = (0..others.len()).min_by(|&a, &b| {
                 others[a].length.total_cmp(&others[b].length).then(others[a].crossings.cmp(&others[b].crossings))

@@ -34,10 +34,13 @@ impl Smoothed {
 /// The curve leaves the path `delta` before the corner and comes back as far behind it; it passes the corner at
 /// delta sin(turn / 2) / 4. With zones wider than the safety distance by `cut`, the curve keeps that distance.
 pub fn fillets(chart: &Chart, path: &[Vec2], cut: f64) -> Smoothed {
-    let mut smooth = vec![path[0]];
+    let mut smooth: Vec<Vec2> = path.first().copied().into_iter().collect();
     for corner in path.windows(3) {
         let [before, here, after] = [corner[0], corner[1], corner[2]];
         let (one, two) = (distance(before, here), distance(here, after));
+        if one.min(two) == 0.0 {
+            continue;
+        }
         let along = |to: Vec2, length: f64| -> Vec2 { std::array::from_fn(|k| (to[k] - here[k]) / length) };
         let (back, on) = (along(before, one), along(after, two));
         let cosine = -(back[0] * on[0] + back[1] * on[1]);
@@ -54,6 +57,9 @@ pub fn fillets(chart: &Chart, path: &[Vec2], cut: f64) -> Smoothed {
 /// One cubic Bezier curve on four points of the path at equal distances along it (eq. 17).
 pub fn one_bezier(chart: &Chart, path: &[Vec2]) -> Smoothed {
     let whole = length(path);
+    if whole == 0.0 {
+        return Smoothed::of(path.to_vec(), chart);
+    }
     let controls = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(|part| point_at(path, part * whole));
     let steps = 4 * POINTS;
     Smoothed::of((0..=steps).map(|i| bezier(controls, i as f64 / steps as f64)).collect(), chart)

@@ -176,20 +176,18 @@ fn hull(points: &[Vec2]) -> Vec<Vec2> {
     let ring = points.convex_hull();
     let mut corners: Vec<Vec2> = ring.exterior().coords().map(|c| [c.x, c.y]).collect();
     corners.pop();
-    let mut i = 0;
-    let mut kept_since = 0;
-    while corners.len() >= 3 && kept_since < corners.len() {
+    // Each corner against its neighbours, until all of one round are kept.
+    let (mut at, mut kept) = (0, 0);
+    while corners.len() >= 3 && kept < corners.len() {
         let n = corners.len();
-        let (before, here, after) = (corners[(i + n - 1) % n], corners[i % n], corners[(i + 1) % n]);
+        at %= n;
+        let (before, here, after) = (corners[(at + n - 1) % n], corners[at], corners[(at + 1) % n]);
         if square(before, here) <= SAME * SAME || half_plane(before, after).beyond(here) <= SAME {
-            corners.remove(i % n);
-            kept_since = 0;
-            i = (i + n - 1) % n;
+            corners.remove(at);
+            kept = 0;
         } else {
-            kept_since += 1;
-            i += 1;
+            (at, kept) = (at + 1, kept + 1);
         }
-        i %= corners.len().max(1);
     }
     let first = (0..corners.len())
         .min_by(|&a, &b| corners[a][0].total_cmp(&corners[b][0]).then(corners[a][1].total_cmp(&corners[b][1])));

@@ -182,7 +182,7 @@ mod tests {
             Obstacle::Polygon(Polygon { vertices_m, top_m: -1.0, bottom_m: 1.0, velocity_mps: [0.0; 2] })
         };
         let mission = Mission { start_m: [20.0, 20.0, 0.0], goal_m: [180.0, 20.0, 0.0] };
-        for (top, way) in [(201.0, false), (195.0, false), (185.0, true)] {
+        for (top, way) in [(201.0, false), (197.0, false), (185.0, true)] {
             scenario.obstacles = vec![wall(-1.0, top)];
             assert_eq!(has_way(&World::trusted(scenario.clone(), 0), &mission), way, "{top}");
         }
