@@ -146,6 +146,7 @@ FAMILIES: dict[str, dict[str, Any]] = {
         "change_every_m": 6,
     },
     "iifds": {},
+    "harbor": {},
 }
 
 

@@ -39,6 +39,9 @@ pub enum PlanError {
     /// The world or its scenario refused.
     #[error(transparent)]
     World(#[from] WorldError),
+    /// The polygons of the world cannot be planned on.
+    #[error(transparent)]
+    Map(#[from] crate::maklink::MapError),
 }
 
 impl PlanError {

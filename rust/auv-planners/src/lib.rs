@@ -11,6 +11,7 @@ pub mod fluid;
 pub mod gaussian;
 pub mod grid;
 pub mod histogram;
+pub mod maklink;
 pub mod optimum;
 pub mod parameters;
 pub mod particle_swarm;

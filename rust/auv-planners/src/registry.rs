@@ -9,7 +9,7 @@ use crate::error::PlanError;
 use crate::parameters::{Common, Parameters, parse, parse_common};
 use crate::plan::Plan;
 use crate::sections::SectionProblem;
-use crate::{differential_evolution, fluid, gaussian, grid, histogram, optimum, particle_swarm, sampling};
+use crate::{differential_evolution, fluid, gaussian, grid, histogram, maklink, optimum, particle_swarm, sampling};
 
 /// A question to a planner.
 #[derive(Clone, Copy)]
@@ -94,6 +94,12 @@ const PLANNERS: &[Entry] = &[
     Entry { name: "iifds-ga", run: fluid::tuning::plan_iifds_ga },
     Entry { name: "iifds-iga", run: fluid::tuning::plan_iifds_iga },
     Entry { name: "iifds-de", run: fluid::tuning::plan_iifds_de },
+    Entry { name: "maklink-dijkstra", run: maklink::plan_maklink_dijkstra },
+    Entry { name: "maklink-aco", run: maklink::plan_maklink_aco },
+    Entry { name: "maklink-pso", run: maklink::plan_maklink_pso },
+    Entry { name: "rmpso", run: maklink::plan_rmpso },
+    Entry { name: "funnel", run: maklink::plan_funnel },
+    Entry { name: "visibility", run: maklink::plan_visibility },
     Entry { name: "section-optimum", run: optimum::plan_section_optimum },
 ];
 

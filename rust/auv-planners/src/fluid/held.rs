@@ -21,9 +21,9 @@ impl Held {
         self.evaluations
     }
 
-    /// Counts a line.
-    pub fn count(&mut self) {
-        self.evaluations += 1;
+    /// Counts so many lines.
+    pub fn count(&mut self, lines: u64) {
+        self.evaluations += lines;
     }
 
     /// Whether a clear line is held.
@@ -89,11 +89,11 @@ mod tests {
         let costing = |total: f64| CostTerms { total, ..terms };
         let mut held = Held::default();
         for (total, clear) in [(5.0, false), (3.0, false), (4.0, true), (1.0, true)] {
-            held.count();
+            held.count(1);
             held.hold(&path, costing(total), clear);
             held.note();
         }
-        held.count();
+        held.count(1);
         let plan = held.finish("iifds", false).unwrap();
         assert_eq!(plan.history, [(1, 5.0), (3, 4.0), (4, 1.0), (5, 1.0)]);
         assert!(Held::default().finish("iifds", false).is_none());

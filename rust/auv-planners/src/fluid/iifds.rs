@@ -86,7 +86,7 @@ pub fn plan_iifds(request: &Request<'_>) -> Result<Plan, PlanError> {
         }
         let ending = trace(&mut field, request.world, &steps, ends, &request.control, &mut path);
         let (cost, clear) = (judge.cost(&path), judge.is_clear(&path));
-        held.count();
+        held.count(1);
         if attempt == 0 || clear || cost.total < held.total() {
             held.hold(&path, cost, clear);
         }

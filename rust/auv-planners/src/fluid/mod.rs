@@ -15,7 +15,9 @@ pub mod tuning;
 mod union;
 
 pub use field::{Body, Coefficients, Field, Modulation};
+pub(crate) use held::Held;
 pub use iifds::{Settings, plan_iifds};
+pub(crate) use judge::Judge;
 pub use obstacles::{Class, bodies};
 pub use settings::{ClassCoefficients, Classes, Flow, Options};
 pub use shape::{Contact, Distance, Shape};

@@ -5,9 +5,11 @@
 //! default, draws everything evenly over the box and the vortices' senses at random; the `paper` variant
 //! keeps the papers' distributions, whose equal-signed vortices round x = 13.5 km make the east side
 //! flow to the goal. `afhh` draws tanks like those of the AFHH paper, a thousandth of that size: spheres
-//! over peaks in still water, and nothing ever changes. `iifds` draws threats on courses that meet the vehicle.
+//! over peaks in still water, and nothing ever changes. `iifds` draws threats on courses that meet the vehicle,
+//! `harbor` basins with polygons.
 
 mod draw;
+mod harbor;
 mod iifds;
 mod layout;
 
@@ -20,7 +22,7 @@ use draw::Draw;
 use layout::{LAYOUTS, Layout};
 
 /// The families there are.
-pub const FAMILIES: [&str; 4] = ["lfhh-2d", "lfhh-3d", "afhh", "iifds"];
+pub const FAMILIES: [&str; 5] = ["lfhh-2d", "lfhh-3d", "afhh", "iifds", "harbor"];
 
 /// How hard a world is: the time limit and the currents make it so, not the number of obstacles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -56,7 +58,7 @@ pub struct Parameters {
     /// Whose distributions.
     pub variant: Variant,
     /// Number of discs (lfhh-2d 22) or spheres (lfhh-3d 70; afhh 60, 120, 200 by difficulty) or threats
-    /// (iifds 3).
+    /// (iifds 3) or polygons (harbor 5, 8, 12 by difficulty).
     pub obstacles: Option<usize>,
     /// Number of vortices (6, afhh 0).
     pub vortices: Option<usize>,
@@ -87,8 +89,10 @@ pub struct Parameters {
 /// # Errors
 /// [`WorldError`] for an unknown family or a parameter that is not allowed, by name.
 pub fn generate(family: &str, seed: u64, parameters: &Parameters) -> Result<Scenario, WorldError> {
-    if family == "iifds" {
-        return iifds::draw(seed, parameters);
+    match family {
+        "iifds" => return iifds::draw(seed, parameters),
+        "harbor" => return harbor::draw(seed, parameters),
+        _ => {}
     }
     let layout = LAYOUTS.iter().find(|layout| layout.name == family).ok_or_else(|| {
         let allowed = format!("the families are {}", FAMILIES.join(", "));

@@ -123,7 +123,7 @@ impl<'a> Tuner<'a> {
         self.interrupted = ending == Ending::Interrupted;
         let arrives = ending == Ending::Reached && self.is_outside();
         let value = if arrives { self.objective.value(self.world, &self.path) } else { f64::INFINITY };
-        self.held.count();
+        self.held.count(1);
         // Among lines that are worth nothing the cheapest is held.
         if value < self.best || self.best == f64::INFINITY {
             let (cost, clear) = (self.judge.cost(&self.path), self.judge.is_clear(&self.path));

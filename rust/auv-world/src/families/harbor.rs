@@ -1,0 +1,202 @@
+//! `harbor`: basins of 200 x 200 m with polygons that need not be convex and may overlap or reach the walls, in
+//! a uniform current, as Huang & Jin (2021) have them. A way from start to goal always exists.
+
+use std::f64::consts::TAU;
+
+use super::{Difficulty, Parameters, few, not_negative};
+use crate::World;
+use crate::error::WorldError;
+use crate::math::{Vec2, Vec3, distance};
+use crate::rng::{Purpose, Stream};
+use crate::scenario::{
+    Current, Domain, Episode, Limits, Mission, Obstacle, Polygon, SCHEMA, Scenario, SectionFrame, Sections, Uniform,
+    Vehicle,
+};
+
+/// The box (m).
+const SIDE: f64 = 200.0;
+/// A metre here is so many of LFHH's.
+const SCALE: f64 = 0.01;
+/// Start and goal keep this clear of polygons (m).
+const MARGIN: f64 = 12.0;
+/// The way that must exist keeps this clear of polygons (m), looked at on a grid this fine.
+const PASSAGE: f64 = 4.0;
+const CELL: f64 = 2.0;
+/// Maps drawn before there counts as being no way.
+const TRIES: usize = 200;
+
+/// Number of polygons, current over the vehicle's speed, and the time factor.
+fn calibration(difficulty: Difficulty) -> (usize, f64, f64) {
+    match difficulty {
+        Difficulty::Easy => (5, 0.1, 2.0),
+        Difficulty::Normal => (8, 0.2, 2.0),
+        Difficulty::Hard => (12, 0.5, 2.5),
+    }
+}
+
+/// Draws a scenario.
+///
+/// # Errors
+/// [`WorldError`] for a parameter that is not allowed, by name.
+pub(super) fn draw(seed: u64, parameters: &Parameters) -> Result<Scenario, WorldError> {
+    few("obstacles", parameters.obstacles)?;
+    for (name, given) in [
+        ("vortices", parameters.vortices.is_some()),
+        ("peaks", parameters.peaks.is_some()),
+        ("ring_ratio", parameters.ring_ratio.is_some()),
+        ("change_every_m", parameters.change_every_m.is_some()),
+        ("obstacle_speed_mps", parameters.obstacle_speed_mps.is_some()),
+        ("vortex_drift_mps", parameters.vortex_drift_mps.is_some()),
+    ] {
+        if given {
+            return Err(WorldError::parameter(name, "given", "harbor has polygons at rest in a uniform current"));
+        }
+    }
+    let (count, ratio, time_factor) = calibration(parameters.difficulty);
+    let count = parameters.obstacles.unwrap_or(count);
+    let ratio = not_negative("current_ratio", parameters.current_ratio, ratio)?;
+    let speed = not_negative("vehicle_speed_mps", parameters.vehicle_speed_mps, 1.5)?;
+    let time_factor = not_negative("time_factor", parameters.time_factor, time_factor)?;
+    let mut stream = Stream::new(seed, Purpose::Family, 5);
+    for _ in 0..TRIES {
+        let mission = mission(&mut stream);
+        let heading = stream.uniform(0.0, TAU);
+        let velocity_mps = [ratio * speed * libm::cos(heading), ratio * speed * libm::sin(heading)];
+        let obstacles = (0..count).map(|_| Obstacle::Polygon(polygon(&mut stream))).collect();
+        let scenario = Scenario {
+            schema: SCHEMA,
+            name: format!("harbor-seed-{seed}"),
+            description: String::new(),
+            family: "harbor".into(),
+            dimensions: 2,
+            notes: Vec::new(),
+            domain: Domain { min_m: [0.0; 3], max_m: [SIDE, SIDE, 0.0], margin_m: 500.0 * SCALE },
+            limits: Limits { goal_radius_m: 300.0 * SCALE, time_factor, energy_factor: time_factor },
+            vehicle: Vehicle { speed_mps: speed, yaw_rate_radps: 60.0_f64.to_radians(), ..Vehicle::default() },
+            episode: episode(),
+            sections: Some(Sections {
+                count: 20,
+                frame: SectionFrame::Mission,
+                spacing_m: None,
+                half_width_m: Some(0.5 * SIDE),
+                cell_m: SIDE / 40.0,
+            }),
+            projection: None,
+            seabed: None,
+            change: None,
+            missions: vec![mission.clone()],
+            currents: if ratio > 0.0 { vec![Current::Uniform(Uniform { velocity_mps })] } else { Vec::new() },
+            obstacles,
+        };
+        if has_way(&World::trusted(scenario.clone(), seed), &mission) {
+            return Ok(scenario);
+        }
+    }
+    Err(WorldError::parameter("obstacles", count, "leave no way from start to goal"))
+}
+
+/// LFHH's legs, in proportion to box and speed.
+fn episode() -> Episode {
+    let (time, legs) = (SCALE * 2.0 / 1.5, Episode::default());
+    Episode {
+        tick_s: legs.tick_s * time,
+        reach_m: legs.reach_m * SCALE,
+        capture_radius_m: legs.capture_radius_m * SCALE,
+        minimum_leg_s: legs.minimum_leg_s * time,
+        maximum_leg_s: legs.maximum_leg_s * time,
+        station_radius_m: legs.station_radius_m * SCALE,
+        waypoint_margin_m: 1.0,
+        sonar_range_m: legs.sonar_range_m * SCALE,
+        sensor_noise_m: 0.0,
+    }
+}
+
+/// Start and goal at least half the box apart.
+fn mission(stream: &mut Stream) -> Mission {
+    loop {
+        let mut place = || [stream.uniform(0.05 * SIDE, 0.95 * SIDE), stream.uniform(0.05 * SIDE, 0.95 * SIDE), 0.0];
+        let (start_m, goal_m) = (place(), place());
+        if distance(start_m, goal_m) >= 0.5 * SIDE {
+            return Mission { start_m, goal_m };
+        }
+    }
+}
+
+/// Three to seven corners round a centre, in order and each at a distance of its own.
+fn polygon(stream: &mut Stream) -> Polygon {
+    let centre = [stream.uniform(0.0, SIDE), stream.uniform(0.0, SIDE)];
+    let corners = 3 + stream.below(5);
+    let size = stream.uniform(12.0, 32.0);
+    let first = stream.uniform(0.0, TAU);
+    let corner = |i: usize| -> Vec2 {
+        let angle = first + TAU * (i as f64 + stream.uniform(-0.3, 0.3)) / corners as f64;
+        let reach = size * stream.uniform(0.5, 1.0);
+        [centre[0] + reach * libm::cos(angle), centre[1] + reach * libm::sin(angle)]
+    };
+    Polygon { vertices_m: (0..corners).map(corner).collect(), top_m: -1.0, bottom_m: 1.0, velocity_mps: [0.0; 2] }
+}
+
+/// Whether start and goal are clear, and joined by cells of a grid that are.
+fn has_way(world: &World, mission: &Mission) -> bool {
+    if [mission.start_m, mission.goal_m].iter().any(|end| world.clearance(*end) < MARGIN) {
+        return false;
+    }
+    const CELLS: usize = (SIDE / CELL) as usize;
+    let place =
+        |cell: usize| -> Vec3 { [((cell % CELLS) as f64 + 0.5) * CELL, ((cell / CELLS) as f64 + 0.5) * CELL, 0.0] };
+    let cell = |point: Vec3| (point[1] / CELL) as usize * CELLS + (point[0] / CELL) as usize;
+    let (start, goal) = (cell(mission.start_m), cell(mission.goal_m));
+    let mut seen = vec![false; CELLS * CELLS];
+    let mut open = vec![start];
+    seen[start] = true;
+    while let Some(here) = open.pop() {
+        if here == goal {
+            return true;
+        }
+        let (column, row) = (here % CELLS, here / CELLS);
+        let beside = [
+            (column > 0).then(|| here - 1),
+            (column + 1 < CELLS).then_some(here + 1),
+            (row > 0).then(|| here - CELLS),
+            (row + 1 < CELLS).then_some(here + CELLS),
+        ];
+        for there in beside.into_iter().flatten() {
+            if !seen[there] && world.clearance(place(there)) >= PASSAGE {
+                seen[there] = true;
+                open.push(there);
+            }
+        }
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::families::generate;
+
+    #[test]
+    fn a_wall_is_no_way_and_a_gap_is() {
+        let mut scenario = generate("harbor", 1, &Parameters::default()).unwrap();
+        let wall = |low: f64, high: f64| {
+            let vertices_m = vec![[95.0, low], [105.0, low], [105.0, high], [95.0, high]];
+            Obstacle::Polygon(Polygon { vertices_m, top_m: -1.0, bottom_m: 1.0, velocity_mps: [0.0; 2] })
+        };
+        let mission = Mission { start_m: [20.0, 20.0, 0.0], goal_m: [180.0, 20.0, 0.0] };
+        for (top, way) in [(201.0, false), (197.0, false), (185.0, true)] {
+            scenario.obstacles = vec![wall(-1.0, top)];
+            assert_eq!(has_way(&World::trusted(scenario.clone(), 0), &mission), way, "{top}");
+        }
+    }
+
+    #[test]
+    fn what_does_not_apply_is_refused() {
+        let vortices = Parameters { vortices: Some(3), ..Parameters::default() };
+        assert!(generate("harbor", 1, &vortices).unwrap_err().to_string().starts_with("vortices"));
+        let full = Parameters { obstacles: Some(400), ..Parameters::default() };
+        assert!(generate("harbor", 1, &full).unwrap_err().to_string().contains("leave no way"));
+        let empty = Parameters { obstacles: Some(0), current_ratio: Some(0.0), ..Parameters::default() };
+        let scenario = generate("harbor", 1, &empty).unwrap();
+        assert!(scenario.currents.is_empty() && scenario.obstacles.is_empty());
+    }
+}
