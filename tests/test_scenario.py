@@ -175,6 +175,7 @@ def test_the_papers_worlds_are_shipped() -> None:
         *("lfhh-2d-1", "lfhh-3d-1", "lfhh-3d-2", "lfhh-3d-3"),
         *("afhh-1", "afhh-2", "afhh-3", "afhh-4"),
         *("iifds-static-dense", "iifds-astar", "iifds-threat1", "iifds-threats3", "iifds-complex"),
+        *("harbor-p", "harbor-a", "harbor-b", "harbor-book", "harbor-raster"),
     }
     assert auvgym.list_families() == list(FAMILIES)
 
@@ -183,7 +184,7 @@ def test_the_papers_worlds_are_shipped() -> None:
 def test_shipped_scenarios_load_for_every_mission(name: str) -> None:
     scenario = World(name).scenario
     assert scenario.name == name
-    assert scenario.dimensions == (2 if "2d" in name else 3)
+    assert scenario.dimensions == (2 if "2d" in name or name.startswith("harbor") else 3)
     assert scenario.description
     assert scenario.family in FAMILIES
     assert ("change" in scenario.to_dict()) == scenario.family.startswith("lfhh")
