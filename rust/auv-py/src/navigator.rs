@@ -11,6 +11,9 @@ use crate::errors;
 use crate::points;
 use crate::world::World;
 
+/// (velocity, waypoint).
+type Course<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+
 /// A vehicle's way from start to goal among threats that it sees.
 #[pyclass(module = "auvgym._core")]
 pub struct Navigator(threats::Navigator);
@@ -52,13 +55,7 @@ impl Navigator {
     }
 
     /// Velocity over ground (m/s) for the next `tick_s` seconds, and where it leads (m).
-    fn course<'py>(
-        &mut self,
-        py: Python<'py>,
-        position: Vec3,
-        time_s: f64,
-        tick_s: f64,
-    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+    fn course<'py>(&mut self, py: Python<'py>, position: Vec3, time_s: f64, tick_s: f64) -> PyResult<Course<'py>> {
         let position = points::finite("position", position)?;
         let course = self.0.course(position, points::time(time_s)?, points::time(tick_s)?);
         Ok((points::point(py, course.velocity), points::point(py, course.waypoint)))
