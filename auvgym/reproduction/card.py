@@ -183,10 +183,3 @@ def load_card(name: str) -> Card:
         if measure not in MEASURES:
             raise CardError(f"card {name}: {unknown('measure', measure, list(MEASURES))}")
     return card
-
-
-def _case(data: dict[str, Any]) -> Case:
-    made: dict[str, Any] = {}
-    for key, one in data.items():
-        made[key] = tuple(one) if isinstance(one, list) else one
-    return Case(**made)
