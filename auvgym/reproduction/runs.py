@@ -52,7 +52,8 @@ class Outcome:
         cost: total cost of the plan, or the mean over the re-plans of all phases.
         feasible: whether the plan, or every re-plan, breaks no constraint.
         evaluations: fitness evaluations spent.
-        seconds: time of the run on this machine, the only figure that differs from run to run.
+        seconds: processor time of the run on this machine, the only figure that differs from run
+            to run; other work on the machine hardly lengthens it.
         curve: for "plan" the best cost after :func:`checkpoints` evaluations.
         measures: for "path" and "threats" what is measured, by name.
     """
@@ -89,9 +90,9 @@ def execute(run: Run) -> Outcome | str:
 
 def _plan(run: Run) -> Outcome:
     world = auvgym.World(run.scenario, seed=run.seed, mission=run.mission)
-    began = time.perf_counter()
+    began = time.process_time()
     plan = auvgym.plan(world, run.planner, seed=run.seed, **json.loads(run.parameters))
-    seconds = time.perf_counter() - began
+    seconds = time.process_time() - began
     spent, best = plan.history[:, 0], plan.history[:, 1]
     last = np.searchsorted(spent, checkpoints(plan.evaluations), side="right") - 1
     curve = tuple(float(f"{cost:.4g}") for cost in best[np.maximum(last, 0)])
@@ -100,11 +101,11 @@ def _plan(run: Run) -> Outcome:
 
 def _phases(run: Run) -> Outcome:
     world = auvgym.World(run.scenario, seed=run.seed, mission=run.mission)
-    began = time.perf_counter()
+    began = time.process_time()
     window = run.window or None
     parameters = json.loads(run.parameters)
     phases = auvgym.run_phases(world, run.planner, seed=run.seed, window=window, **parameters)
-    seconds = time.perf_counter() - began
+    seconds = time.process_time() - began
     replans = phases[1:]
     return Outcome(
         cost=float(np.mean([phase.cost for phase in replans])),
@@ -119,22 +120,22 @@ def _path(run: Run) -> Outcome:
     parameters = json.loads(run.parameters)
     objective = parameters.get("objective", {})
     evaluations, feasible = 0, True
-    began = time.perf_counter()
+    began = time.process_time()
     if run.planner == "raster-astar":
         path = raster_astar(world, **parameters)
     else:
         plan = auvgym.plan(world, run.planner, seed=run.seed, **parameters)
         path, feasible, evaluations = plan.waypoints, plan.feasible, plan.evaluations
-    seconds = time.perf_counter() - began
+    seconds = time.process_time() - began
     measures = {**of_path(world, path, objective), "evaluations": float(evaluations)}
     return Outcome(measures["objective"], feasible, evaluations, seconds, measures=measures)
 
 
 def _threats(run: Run) -> Outcome:
     world = auvgym.World(run.scenario, seed=run.seed, mission=run.mission)
-    began = time.perf_counter()
+    began = time.process_time()
     measures = fly_among_threats(world, **json.loads(run.parameters))
-    seconds = time.perf_counter() - began
+    seconds = time.process_time() - began
     unharmed = measures["reached"] == 1.0 and measures["hits"] == 0.0
     return Outcome(measures["length_km"], unharmed, 0, seconds, measures=measures)
 
