@@ -58,6 +58,7 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
         obstacle_speed_mps: float | None = None,
         vortex_drift_mps: float | None = None,
         sensor_noise_m: float | None = None,
+        vessels: int | None = None,
         render_mode: str | None = None,
         **unknown_settings: Any,
     ) -> None:
@@ -88,6 +89,7 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
             "obstacle_speed_mps": obstacle_speed_mps,
             "vortex_drift_mps": vortex_drift_mps,
             "sensor_noise_m": sensor_noise_m,
+            "vessels": vessels,
         }
         self._source = self._make_source()
         self._episode: _core.Episode | None = None

@@ -3,6 +3,7 @@
 use auv_world::math::Vec3;
 
 use crate::cost::CostTerms;
+use crate::maklink::HarborReport;
 
 /// A planner's answer. If it found no feasible path it says so and gives the best of the others.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,4 +22,6 @@ pub struct Plan {
     pub history: Vec<(u64, f64)>,
     /// Whether the caller interrupted it.
     pub interrupted: bool,
+    /// What planners in harbours say of it.
+    pub harbor: Option<Box<HarborReport>>,
 }

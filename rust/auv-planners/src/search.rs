@@ -123,6 +123,7 @@ impl<'a> Search<'a> {
             evaluations: self.evaluations,
             history: self.history,
             interrupted: self.interrupted,
+            harbor: None,
         }
     }
 }

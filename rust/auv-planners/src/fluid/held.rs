@@ -71,6 +71,7 @@ impl Held {
             evaluations: self.evaluations,
             history: self.history,
             interrupted,
+            harbor: None,
         })
     }
 }

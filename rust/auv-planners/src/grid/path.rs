@@ -100,6 +100,7 @@ fn plan(request: &Request<'_>, method: Method) -> Result<Plan, PlanError> {
         evaluations,
         history: vec![(evaluations, cost.total)],
         interrupted: found.is_none(),
+        harbor: None,
     })
 }
 

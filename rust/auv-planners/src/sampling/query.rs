@@ -184,6 +184,7 @@ impl<'a> Query<'a> {
             evaluations: self.evaluations,
             history: self.history,
             interrupted: self.interrupted,
+            harbor: None,
         }
     }
 }
