@@ -14,9 +14,17 @@ use crate::interrupt::Signals;
 use crate::points;
 use crate::world::World;
 
-/// (planner, waypoints, feasible, cost, evaluations, history, window).
-type FoundPlan<'py> =
-    (String, Bound<'py, PyArray2<f64>>, bool, Bound<'py, PyDict>, u64, Bound<'py, PyArray2<f64>>, Option<usize>);
+/// (planner, waypoints, feasible, cost, evaluations, history, window, coefficients).
+type FoundPlan<'py> = (
+    String,
+    Bound<'py, PyArray2<f64>>,
+    bool,
+    Bound<'py, PyDict>,
+    u64,
+    Bound<'py, PyArray2<f64>>,
+    Option<usize>,
+    Bound<'py, PyDict>,
+);
 
 /// Runs planning without the GIL; Ctrl-C stops it within a fraction of a second.
 fn run<T: Send>(py: Python<'_>, work: impl FnOnce(&Control<'_>) -> Result<T, PlanError> + Send) -> PyResult<T> {
@@ -44,7 +52,12 @@ fn found(py: Python<'_>, plan: auv_planners::Plan, window: Option<usize>) -> PyR
     let rows = history.len();
     let history = PyArray1::from_slice(py, history.as_flattened()).reshape([rows, 2])?;
     let waypoints = points::table(py, &plan.waypoints)?;
-    Ok((plan.planner, waypoints, plan.feasible, terms(py, &plan.cost)?, plan.evaluations, history, window))
+    let coefficients = PyDict::new(py);
+    for (name, value) in &plan.coefficients {
+        coefficients.set_item(name, value)?;
+    }
+    let cost = terms(py, &plan.cost)?;
+    Ok((plan.planner, waypoints, plan.feasible, cost, plan.evaluations, history, window, coefficients))
 }
 
 /// Names of the planners.

@@ -176,6 +176,7 @@ impl<'a> Search<'a> {
             cost,
             evaluations: 0,
             history: Vec::new(),
+            coefficients: Vec::new(),
             interrupted,
         })
     }
