@@ -40,7 +40,8 @@ _Point: TypeAlias = tuple[float, float, float]
 # (gap_m, depth_m, corners (n, 3), trace (m, 2)); these are only here, for type checkers: the engine
 # has no such names.
 FoundReport: TypeAlias = tuple[float | None, float, NDArray[np.float64], NDArray[np.float64]]
-# (planner, waypoints (n, 3), feasible, cost, evaluations, history (m, 2), window, harbor).
+# (planner, waypoints (n, 3), feasible, cost, evaluations, history (m, 2), window, harbor,
+# coefficients).
 FoundPlan: TypeAlias = tuple[
     str,
     NDArray[np.float64],
@@ -50,6 +51,7 @@ FoundPlan: TypeAlias = tuple[
     NDArray[np.float64],
     int | None,
     FoundReport | None,
+    dict[str, float],
 ]
 # (ring (n, 2), numbers) of each zone or cell.
 FoundRings: TypeAlias = list[tuple[NDArray[np.float64], list[int]]]

@@ -50,6 +50,8 @@ class Plan:
         history: best total cost against evaluations so far, (m, 2) float64.
         window: sections of the last planning window, where one was used.
         harbor: what planners of harbours say of the path; None from others.
+        coefficients: those of the flow that drew the path (``rho``, ``sigma``, ``theta``, ``lambda``),
+            chosen or tuned; empty for all but the planners ``iifds``.
     """
 
     planner: str
@@ -60,6 +62,7 @@ class Plan:
     history: Array = field(repr=False)
     window: int | None = None
     harbor: HarborReport | None = None
+    coefficients: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -285,8 +288,8 @@ def _window(window: int) -> int:
 
 
 def _plan(found: _core.FoundPlan) -> Plan:
-    *parts, harbor = found
-    return Plan(*parts, harbor=None if harbor is None else HarborReport(*harbor))
+    *parts, harbor, coefficients = found
+    return Plan(*parts, None if harbor is None else HarborReport(*harbor), coefficients)
 
 
 def _check_planner(planner: str) -> None:
