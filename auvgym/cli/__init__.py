@@ -13,6 +13,7 @@ from auvgym.cli.listing import list_names
 from auvgym.cli.plan import plan
 from auvgym.cli.replay import replay
 from auvgym.cli.reproduce import reproduce
+from auvgym.cli.suite import suite
 
 app = typer.Typer(
     name="auvgym",
@@ -41,6 +42,7 @@ app.command("evaluate")(evaluate)
 app.command("leaderboard")(leaderboard)
 app.command("replay")(replay)
 app.command("reproduce")(reproduce)
+app.command("suite")(suite)
 
 
 def main() -> None:
