@@ -14,6 +14,7 @@ from auvgym.cli.plan import plan
 from auvgym.cli.replay import replay
 from auvgym.cli.reproduce import reproduce
 from auvgym.cli.suite import suite
+from auvgym.cli.verify import verify
 
 app = typer.Typer(
     name="auvgym",
@@ -43,6 +44,7 @@ app.command("leaderboard")(leaderboard)
 app.command("replay")(replay)
 app.command("reproduce")(reproduce)
 app.command("suite")(suite)
+app.command("verify")(verify)
 
 
 def main() -> None:

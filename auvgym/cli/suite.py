@@ -64,17 +64,10 @@ def _freeze(name: str, suite: Suite) -> None:
 
 
 def _changed(suite: Suite) -> list[str]:
-    from auvgym.evaluation import SuiteError
-
     if not suite.frozen:
         fail(f'suite "{suite.name}" is not frozen: there is nothing to hold its worlds to')
-    found: list[str] = []
-    for instance, digest in zip(suite.instances, _hashes(suite), strict=True):
-        try:
-            instance.check_world(digest)
-        except SuiteError as error:
-            found.append(str(error))
-    return found
+    pairs = zip(suite.instances, _hashes(suite), strict=True)
+    return [text for instance, digest in pairs if (text := instance.change(digest))]
 
 
 def _hashes(suite: Suite) -> list[str]:

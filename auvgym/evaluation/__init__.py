@@ -14,6 +14,7 @@ from auvgym.evaluation.store import Store, StoreError
 from auvgym.evaluation.suite import Instance, Suite, SuiteError, single_suite
 from auvgym.evaluation.suite_file import list_suites, load_suite
 from auvgym.evaluation.summary import PolicySummary, summarise, wilson_interval
+from auvgym.evaluation.verify import Verification, verify
 
 __all__ = [
     "EpisodeResult",
@@ -27,11 +28,13 @@ __all__ = [
     "StoreError",
     "Suite",
     "SuiteError",
+    "Verification",
     "list_suites",
     "load_suite",
     "replay",
     "run",
     "single_suite",
     "summarise",
+    "verify",
     "wilson_interval",
 ]

@@ -32,7 +32,8 @@ _FILES = ("currents", "bathymetry")
 def ocean_missions() -> dict[str, dict[str, Any]]:
     """Name of a mission -> arguments of :func:`auvgym.ocean.load`, files by name alone."""
     file = resources.files("auvgym.evaluation") / "oceans.toml"
-    return tomllib.loads(file.read_text(encoding="utf-8"))
+    missions: dict[str, dict[str, Any]] = tomllib.loads(file.read_text(encoding="utf-8"))
+    return missions
 
 
 def ocean_scenario(name: str) -> Scenario:

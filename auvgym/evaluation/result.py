@@ -45,9 +45,9 @@ class EpisodeResult:
         environment, difficulty, scenario, settings, seed: the instance.
         scenario_hash: content hash of the world that was met.
         engine_version: version of the package that flew it.
-        outcome: goal, collision, out_of_bounds, energy, timeout; or how the policy failed: error (it
-            raised), invalid_action (not finite, of wrong shape or range), overtime (a step took
-            longer than its limit), exit (it ended its process).
+        outcome: goal, collision, out_of_bounds, energy, timeout; or how the policy failed: error
+            (it raised), invalid_action (not finite, of wrong shape or range), overtime (a step
+            took longer than its limit), exit (it ended its process).
         error: the failure's text, else empty.
         success: 1 or 0.
         score: success * T_ref / clip(T, T_ref, 8 T_ref), T_ref = ``still_water_time_s``.

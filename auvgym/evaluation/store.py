@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 import sqlite3
-import time
+import threading
 import typing
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import astuple, fields
 from pathlib import Path
 from types import TracebackType
@@ -47,34 +47,24 @@ class Store:
     def __init__(self, path: str | Path | None, *, read_only: bool = False) -> None:
         self.path = None if path is None else Path(path)
         with self._explained():
-            if self.path is not None and read_only:
+            if read_only and self.path is not None:
                 if not self.path.is_file():
                     raise StoreError(f"{self.path}: there is no such file")
-                _refuse_foreign(self.path)
-                self._database = _open_to_read(self.path)
-                return
-            if self.path is not None:
+                if _refuse_foreign(self.path):
+                    self._database = _open_to_read(self.path)
+                    return
+            # What has no table yet reads as an empty file.
+            in_memory = self.path is None or read_only
+            if self.path is not None and not read_only:
                 self.path.parent.mkdir(parents=True, exist_ok=True)
+                if not self.path.exists():
+                    _make(self.path)
                 _refuse_foreign(self.path)
             # Two runners may share the file: each waits for the other's short write.
-            self._database = sqlite3.connect(self.path or ":memory:", timeout=_PATIENCE_SECONDS)
-            self._prepare()
-
-    def _prepare(self) -> None:
-        _journal(self._database)
-        # FULL: a commit is on the disk, not in the system's cache alone.
-        self._database.execute("PRAGMA synchronous = FULL")
-        columns = ", ".join(_column(name, kind) for name, kind in _columns().items())
-        # Everything that marks the file as ours in one transaction, for which two that make the
-        # same new file wait in turn: a kill or a reader in between finds all of it or nothing.
-        with self._database:
-            self._database.execute("BEGIN IMMEDIATE")
-            self._database.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-            self._database.execute(f"PRAGMA user_version = {SCHEMA}")
-            self._database.execute(
-                f"CREATE TABLE IF NOT EXISTS episodes "
-                f"({columns}, checksum TEXT NOT NULL, UNIQUE ({', '.join(_KEY)}))"
+            self._database = sqlite3.connect(
+                ":memory:" if in_memory else str(self.path), timeout=_PATIENCE_SECONDS
             )
+            _prepare(self._database)
 
     def check_same(self, suite: Suite, engine_version: str) -> None:
         """Refuse to mix: rows of this suite must come from this engine and these instances."""
@@ -164,6 +154,8 @@ class Store:
             yield
         except (sqlite3.Error, OSError) as error:
             raise StoreError(f"{self.path}: results cannot be kept there ({error})") from error
+        except UnicodeDecodeError as error:
+            raise StoreError(f"{self.path}: holds a text that is none ({error})") from error
 
 
 def key(suite: Suite, policy: PolicySpec, instance: Instance) -> Key:
@@ -180,27 +172,47 @@ def result_key(result: EpisodeResult) -> Key:
     return tuple(getattr(result, name) for name in _KEY)
 
 
-def _journal(database: sqlite3.Connection) -> None:
-    """Turn to write-ahead logging.
+def _make(path: Path) -> None:
+    """Make a new file, whole from its first moment on.
 
-    SQLite does not wait here as it does elsewhere: where two open a new file at the same moment,
-    one is told at once that the database is locked, whatever its timeout.
+    SQLite makes one in steps, between which a kill leaves a half, and two that make the same one
+    meet a lock for which it does not wait ("database is locked" at once, whatever the timeout). So
+    it is made aside and linked to its name; whoever comes second takes the first one's.
     """
-    deadline = time.monotonic() + _PATIENCE_SECONDS
-    while True:
+    aside = path.with_name(f".{path.name}.{os.getpid()}.{threading.get_ident()}.new")
+    try:
+        database = sqlite3.connect(aside)
         try:
-            database.execute("PRAGMA journal_mode = WAL")
-            return
-        except sqlite3.OperationalError as error:
-            if "locked" not in str(error) or time.monotonic() > deadline:
-                raise
-            time.sleep(0.01)
+            _prepare(database)
+        finally:
+            database.close()
+        # A file system without links: then it is made in steps after all.
+        with suppress(OSError):
+            os.link(aside, path)
+    finally:
+        aside.unlink(missing_ok=True)
 
 
-def _refuse_foreign(path: Path) -> None:
-    """Look before writing: an existing file must carry our mark."""
-    if not path.exists() or (path.is_file() and path.stat().st_size == 0):
+def _prepare(database: sqlite3.Connection) -> None:
+    database.execute("PRAGMA journal_mode = WAL")
+    # FULL: a commit is on the disk, not in the system's cache alone.
+    database.execute("PRAGMA synchronous = FULL")
+    if database.execute("SELECT count(*) FROM sqlite_schema").fetchone() != (0,):
         return
+    columns = ", ".join(_column(name, kind) for name, kind in _columns().items())
+    with database:
+        database.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+        database.execute(f"PRAGMA user_version = {SCHEMA}")
+        database.execute(
+            f"CREATE TABLE IF NOT EXISTS episodes "
+            f"({columns}, checksum TEXT NOT NULL, UNIQUE ({', '.join(_KEY)}))"
+        )
+
+
+def _refuse_foreign(path: Path) -> bool:
+    """Look before writing: an existing file must carry our mark. True if it holds a table."""
+    if not path.exists() or (path.is_file() and path.stat().st_size == 0):
+        return False
     try:
         with _reading(path) as database:
             (application,) = database.execute("PRAGMA application_id").fetchone()
@@ -208,10 +220,10 @@ def _refuse_foreign(path: Path) -> None:
             (tables,) = database.execute("SELECT count(*) FROM sqlite_schema").fetchone()
     except sqlite3.OperationalError:
         raise
-    except sqlite3.DatabaseError as error:
+    except (sqlite3.DatabaseError, UnicodeDecodeError) as error:
         raise StoreError(f"{path}: is not an auvgym results file ({error})") from error
     if not application and not tables:
-        return  # another runner is just making it
+        return False
     if application != APPLICATION_ID:
         raise StoreError(f"{path}: is an SQLite file, but not auvgym's; choose another folder")
     if schema != SCHEMA:
@@ -219,6 +231,7 @@ def _refuse_foreign(path: Path) -> None:
             f"{path}: has schema {schema}, this version of auvgym reads {SCHEMA}; "
             "choose another folder"
         )
+    return True
 
 
 @contextmanager

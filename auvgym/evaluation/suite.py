@@ -49,18 +49,14 @@ class Instance:
         """The instance in words, for messages."""
         return f"{stratum_label(self.stratum)} seed {self.seed}"
 
-    def check_world(self, scenario_hash: str) -> None:
-        """Hold the world that was met to the one that was frozen.
-
-        Raises:
-            SuiteError: it is another one.
-        """
-        if not scenario_hash.startswith(self.scenario_hash):
-            raise SuiteError(
-                f"{self.label}: the world has changed since the suite was frozen (hash "
-                f"{self.scenario_hash} then, {scenario_hash[:16]} now); results would not be "
-                "comparable"
-            )
+    def change(self, scenario_hash: str) -> str:
+        """What differs between the world that was met and the one that was frozen, else empty."""
+        if scenario_hash.startswith(self.scenario_hash):
+            return ""
+        return (
+            f"{self.label}: the world has changed since the suite was frozen (hash "
+            f"{self.scenario_hash} then, {scenario_hash[:16]} now); results would not be comparable"
+        )
 
 
 def stratum_label(stratum: Stratum) -> str:

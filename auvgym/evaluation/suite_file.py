@@ -90,7 +90,8 @@ def world_hashes(suite: Suite, on_world: Callable[[int], None] | None = None) ->
         if env is None:
             env = environments[setting] = make_environment(instance)
         env.reset(seed=instance.seed)
-        hashes.append(str(env.unwrapped.world.scenario.hash))
+        core: Any = env.unwrapped
+        hashes.append(str(core.world.scenario.hash))
         if on_world is not None:
             on_world(len(hashes))
     return hashes

@@ -111,10 +111,8 @@ def _result(
         _, flight.info = flight.env.reset(seed=task.instance.seed)
         flight.maps.append((0, flight.env.unwrapped.world))  # type: ignore[attr-defined]
     measured = measures(flight)
-    try:
-        task.instance.check_world(measured["scenario_hash"])
-    except SuiteError as changed:
-        return changed
+    if changed := task.instance.change(measured["scenario_hash"]):
+        return SuiteError(changed)
     if failure:
         measured |= {"outcome": failure, "success": 0, "score": 0.0}
     return EpisodeResult(

@@ -1,7 +1,8 @@
 """Scripted policies: the floors and references of every board, and planners as policies.
 
 ``make(name, seed=0, **parameters)`` gives one, ``list_policies()`` the names. A policy of one's
-own is a class with ``reset(env)`` or ``reset(observation, info)``, and ``act(observation, info)``, see :class:`Policy`.
+own is a class with ``reset(env)`` or ``reset(observation, info)``, and
+``act(observation, info)``, see :class:`Policy`.
 """
 
 from __future__ import annotations

@@ -47,9 +47,9 @@ def make(name: str, seed: int = 0, **parameters: Any) -> Policy:
     """Make a policy.
 
     Args:
-        name: one of :func:`list_policies`, ``"module:Class"`` for a class of one's own, or the path
-            of a trained agent: ``"agent.onnx"`` with its card, or a Stable-Baselines3 ``"agent.zip"``
-            (reading one runs code from it).
+        name: one of :func:`list_policies`, ``"module:Class"`` for a class of one's own, or the
+            path of a trained agent: ``"agent.onnx"`` with its card, or a Stable-Baselines3
+            ``"agent.zip"`` (reading one runs code from it).
         seed: seed of whatever the policy draws.
         **parameters: the policy's own, as its class documents them; a planner's policy takes
             ``window`` and the planner's parameters.
@@ -65,7 +65,8 @@ def make(name: str, seed: int = 0, **parameters: Any) -> Policy:
     for ending, agent in AGENTS.items():
         if name.endswith(ending):
             _check_parameters(name, agent, parameters, ("seed", "path"))
-            return agent(name, seed=seed, **parameters)
+            made: Any = agent(name, seed=seed, **parameters)
+            return made  # type: ignore[no-any-return]
     if ":" in name:
         return _make_foreign(name, seed, parameters)
     raise PolicyError(unknown("policy", name, list_policies()))
