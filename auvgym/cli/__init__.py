@@ -8,6 +8,7 @@ import typer
 
 from auvgym.cli.console import FriendlyGroup, print_version
 from auvgym.cli.evaluate import evaluate
+from auvgym.cli.export import export
 from auvgym.cli.leaderboard import leaderboard
 from auvgym.cli.listing import list_names
 from auvgym.cli.plan import plan
@@ -45,6 +46,7 @@ app.command("replay")(replay)
 app.command("reproduce")(reproduce)
 app.command("suite")(suite)
 app.command("verify")(verify)
+app.command("export")(export)
 
 
 def main() -> None:
