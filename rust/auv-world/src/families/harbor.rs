@@ -53,6 +53,7 @@ pub(super) fn draw(seed: u64, parameters: &Parameters) -> Result<Scenario, World
         ("ring_ratio", parameters.ring_ratio.is_some()),
         ("change_every_m", parameters.change_every_m.is_some()),
         ("vortex_drift_mps", parameters.vortex_drift_mps.is_some()),
+        ("manoeuvres", parameters.manoeuvres.is_some()),
     ] {
         if given {
             return Err(WorldError::parameter(
@@ -166,7 +167,7 @@ fn vessel(stream: &mut Stream, mission: &Mission, fastest: f64) -> Obstacle {
             break place;
         }
     };
-    Obstacle::Disc(Disc { position_m, radius_m, velocity_mps: [pace * libm::cos(heading), pace * libm::sin(heading)] })
+    Obstacle::Disc(Disc { position_m, radius_m, velocity_mps: [pace * libm::cos(heading), pace * libm::sin(heading)], manoeuvre: None })
 }
 
 /// Whether something lies on the straight line from start to goal.
