@@ -21,7 +21,17 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 from auvgym._core import ActionError, PlanningError, ScenarioError, __version__
-from auvgym.planning import Plan, gap, list_planners, path_cost, plan, replan, run_phases
+from auvgym.harbors import Maklink, maklink
+from auvgym.planning import (
+    HarborReport,
+    Plan,
+    gap,
+    list_planners,
+    path_cost,
+    plan,
+    replan,
+    run_phases,
+)
 from auvgym.registration import register_environments
 from auvgym.scenario import Scenario, list_families, list_scenarios
 from auvgym.section_problem import SectionProblem
@@ -33,6 +43,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ActionError",
+    "HarborReport",
+    "Maklink",
     "Plan",
     "PlanningError",
     "Scenario",
@@ -46,6 +58,7 @@ __all__ = [
     "list_planners",
     "list_policies",
     "list_scenarios",
+    "maklink",
     "ocean",
     "path_cost",
     "plan",

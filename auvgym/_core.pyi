@@ -25,6 +25,7 @@ __all__ = [
     "__version__",
     "families",
     "list_planners",
+    "maklink",
     "observation_layout",
     "outcomes",
     "path_cost",
@@ -38,11 +39,24 @@ __version__: str
 
 _Point: TypeAlias = tuple[float, float, float]
 
-# (planner, waypoints (n, 3), feasible, cost, evaluations, history (m, 2), window); only here, for
-# type checkers: the engine has no such name.
+# (gap_m, depth_m, corners (n, 3), trace (m, 2)); these are only here, for type checkers: the engine
+# has no such names.
+FoundReport: TypeAlias = tuple[float | None, float, NDArray[np.float64], NDArray[np.float64]]
+# (planner, waypoints (n, 3), feasible, cost, evaluations, history (m, 2), window, harbor,
+# coefficients).
 FoundPlan: TypeAlias = tuple[
-    str, NDArray[np.float64], bool, dict[str, float], int, NDArray[np.float64], int | None
+    str,
+    NDArray[np.float64],
+    bool,
+    dict[str, float],
+    int,
+    NDArray[np.float64],
+    int | None,
+    FoundReport | None,
+    dict[str, float],
 ]
+# (ring (n, 2), numbers) of each zone or cell.
+FoundRings: TypeAlias = list[tuple[NDArray[np.float64], list[int]]]
 
 class ScenarioError(ValueError):
     """A scenario that is not allowed: names file, key, value and what was allowed."""
@@ -271,6 +285,16 @@ def outcomes() -> list[str]: ...
 def observation_layout(dimensions: int) -> list[tuple[str, int, int, float, float, str]]: ...
 def sonar_directions(dimensions: int) -> NDArray[np.float64]: ...
 def list_planners() -> list[str]: ...
+def maklink(
+    world: World, start: _Point | None, goal: _Point | None, zones_json: str
+) -> tuple[
+    FoundRings,
+    NDArray[np.float64],
+    FoundRings,
+    NDArray[np.float64],
+    NDArray[np.int64],
+    NDArray[np.int64],
+]: ...
 def plan(
     world: World,
     planner: str,

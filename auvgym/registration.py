@@ -8,6 +8,7 @@ import gymnasium
 ENVIRONMENTS = {
     "AUVDynamic2D-v0": "auvgym.envs:AUVDynamic2DEnv",
     "AUVDynamic3D-v0": "auvgym.envs:AUVDynamic3DEnv",
+    "AUVHarbor2D-v0": "auvgym.envs:AUVHarbor2DEnv",
     "AUVStatic3D-v0": "auvgym.envs:AUVStatic3DEnv",
     "AUVThreat3D-v0": "auvgym.envs:AUVThreat3DEnv",
 }

@@ -57,9 +57,9 @@ def show(results: Sequence[EpisodeResult]) -> None:
         console.print(table)
         console.print()
     console.print(explanation(columns), style="dim")
-    failed = {result.policy: result for result in reversed(results) if result.outcome == "error"}
+    failed = {result.policy: result for result in reversed(results) if result.policy_failed}
     for policy, result in sorted(failed.items()):
-        text = f"{policy}: error in {result.environment} seed {result.seed}: {result.error}"
+        text = f"{policy}: {result.outcome} in {result.instance.label}: {result.error}"
         messages().print(text, style="yellow", markup=False, soft_wrap=True)
 
 

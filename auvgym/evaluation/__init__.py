@@ -11,15 +11,10 @@ from auvgym.evaluation.replay import Replay, ReplayError, replay
 from auvgym.evaluation.result import EpisodeResult, PolicySpec
 from auvgym.evaluation.runner import run
 from auvgym.evaluation.store import Store, StoreError
-from auvgym.evaluation.suite import (
-    Instance,
-    Suite,
-    SuiteError,
-    list_suites,
-    load_suite,
-    single_suite,
-)
+from auvgym.evaluation.suite import Instance, Suite, SuiteError, single_suite
+from auvgym.evaluation.suite_file import list_suites, load_suite
 from auvgym.evaluation.summary import PolicySummary, summarise, wilson_interval
+from auvgym.evaluation.verify import Verification, verify
 
 __all__ = [
     "EpisodeResult",
@@ -33,11 +28,13 @@ __all__ = [
     "StoreError",
     "Suite",
     "SuiteError",
+    "Verification",
     "list_suites",
     "load_suite",
     "replay",
     "run",
     "single_suite",
     "summarise",
+    "verify",
     "wilson_interval",
 ]

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from auvgym.evaluation.result import EpisodeResult
+from auvgym.evaluation.suite import Stratum
 
-Stratum = tuple[str, str, str]  # environment, difficulty, scenario
 Entrant = tuple[str, int, str]  # policy, its seed, its parameters
 WILSON_Z = 1.959963984540054  # two-sided 95 %
 
@@ -30,6 +30,7 @@ class PolicySummary:
     environment: str
     difficulty: str
     scenario: str
+    settings: str
     policy: str
     policy_seed: int
     parameters: str
@@ -54,8 +55,8 @@ class PolicySummary:
 
     @property
     def stratum(self) -> Stratum:
-        """What is ranked together: environment, difficulty, scenario."""
-        return self.environment, self.difficulty, self.scenario
+        """What is ranked together: environment, difficulty, scenario, settings."""
+        return self.environment, self.difficulty, self.scenario, self.settings
 
 
 def summarise(results: Iterable[EpisodeResult]) -> list[PolicySummary]:
@@ -96,6 +97,7 @@ def _summary(rank: int, episodes: Sequence[EpisodeResult]) -> PolicySummary:
         environment=first.environment,
         difficulty=first.difficulty,
         scenario=first.scenario,
+        settings=first.settings,
         policy=first.policy,
         policy_seed=first.policy_seed,
         parameters=first.parameters,
@@ -103,7 +105,7 @@ def _summary(rank: int, episodes: Sequence[EpisodeResult]) -> PolicySummary:
         rank=rank,
         episodes=len(episodes),
         solved=len(solved),
-        errors=sum(episode.outcome == "error" for episode in episodes),
+        errors=sum(episode.policy_failed for episode in episodes),
         success_low=low,
         success_high=high,
         score=_mean_score(episodes),

@@ -5,6 +5,7 @@ mod episode;
 mod errors;
 mod field;
 mod interrupt;
+mod maklink;
 mod navigator;
 mod planning;
 mod points;
@@ -25,6 +26,8 @@ mod _core {
     use crate::errors::{ActionError, PlanningError, ScenarioError};
     #[pymodule_export]
     use crate::field::TimeField;
+    #[pymodule_export]
+    use crate::maklink::maklink;
     #[pymodule_export]
     use crate::navigator::Navigator;
     #[pymodule_export]
