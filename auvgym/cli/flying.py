@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import enum
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -14,8 +15,33 @@ if TYPE_CHECKING:
     from auvgym.evaluation import EpisodeResult, PolicySpec, Store, Suite
 
 
+# That of auvgym.evaluation.runner, which is imported only where it is used.
+STEP_LIMIT_S = 120.0
+
+
+class Engine(enum.Enum):
+    """Where episodes are flown."""
+
+    processes = "processes"
+    ray = "ray"
+
+
+EngineOption = Annotated[
+    Engine,
+    typer.Option(help="Processes here, or a Ray cluster (RAY_ADDRESS, else one on this machine)."),
+]
+StepLimitOption = Annotated[
+    float, typer.Option(help="Seconds that one call of a policy may take before it loses.")
+]
+
+
 def fly_with_progress(
-    suite: Suite, specs: Sequence[PolicySpec], store: Store, workers: int
+    suite: Suite,
+    specs: Sequence[PolicySpec],
+    store: Store,
+    workers: int,
+    engine: Literal["processes", "ray"] = "processes",
+    step_limit_s: float = STEP_LIMIT_S,
 ) -> list[EpisodeResult]:
     """Run ``suite``; on Ctrl-C say what is kept and how to go on, and exit with 130."""
     from auvgym import evaluation
@@ -31,7 +57,7 @@ def fly_with_progress(
             bar.update(progress, completed=done)
 
         try:
-            return evaluation.run(suite, specs, store, workers, on_episode)
+            return evaluation.run(suite, specs, store, workers, on_episode, engine, step_limit_s)
         except KeyboardInterrupt:
             bar.stop()
             kept = _kept(store, suite, specs)
