@@ -71,12 +71,19 @@ def write_episode_page(row: EpisodeResult, path: Path) -> Replay:
     return replayed
 
 
-def write_plan_page(world: auvgym.World, plan: auvgym.Plan, path: Path) -> Path:
-    """Write a plan on its map."""
+def write_plan_page(
+    world: auvgym.World, plan: auvgym.Plan, path: Path, chart: auvgym.Maklink | None = None
+) -> Path:
+    """Write a plan on its map, and on the chart on which it was planned if there is one."""
+    import numpy as np
+
     from auvgym import report
 
     title = f"{plan.planner} on {world.scenario.name}"
-    return _write(path, report.figure_page(report.plan_figure(world, plan), title))
+    corners = None if plan.harbor is None else plan.harbor.corners
+    if corners is not None and np.array_equal(corners, plan.waypoints):
+        corners = None
+    return _write(path, report.figure_page(report.plan_figure(world, plan, chart, corners), title))
 
 
 def episode_figure(replayed: Replay, row: EpisodeResult) -> Any:

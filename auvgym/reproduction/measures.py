@@ -16,12 +16,24 @@ MEASURES = {
     "length_km": "Length (km)",
     "angle_rad": "Mean angle to the current (rad)",
     "objective": "A = eta1 A1 + eta2 A2",
+    "lambda": "lambda, the share of the way to the goal in the flow",
+    "time_s": "Travel time (s) of a vehicle that crabs along the path",
     "clearance_km": "Least clearance (km), at least; negative inside",
     "threat_km": "Least distance to a threat's surface (km); negative inside",
     "hits": "Points of the path inside something solid",
     "turn_deg": "Sharpest turn (degrees)",
     "reached": "Share that arrived",
     "evaluations": "Evaluations",
+    "length_m": "Length (m)",
+    "gap_percent": "Length above the exact optimum (%)",
+    "iteration": "First iteration within 1 % of its own end",
+    "evaluations_1": "Evaluations until within 1 % of the exact optimum; all if never",
+    "fitness": "F, as the planner minimises it",
+    "time_s": "Travel time (s)",
+    "time_loss_percent": "Travel time above the fastest (%)",
+    "inside_m": "Way inside danger zones (m)",
+    "clearance_m": "Least clearance to polygons (m); negative inside",
+    "free": "Share of free paths",
     "step_us": "Time of a step (microseconds)",
 }
 #: Paths are looked at this often, m.
@@ -45,6 +57,7 @@ def of_path(world: auvgym.World, path: Array, objective: dict[str, Any]) -> dict
     sharpest = np.arccos(np.clip(cosines, -1.0, 1.0)).max(initial=0.0)
     return {
         **flow_terms(world, path, objective),
+        "time_s": auvgym.path_cost(world, path, cost="time")["time_s"],
         "clearance_km": float(clearances.min()) / _KM,
         "hits": float(np.count_nonzero(clearances <= 0.0)),
         "turn_deg": float(np.rad2deg(sharpest)),

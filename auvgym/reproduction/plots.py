@@ -11,6 +11,7 @@ import numpy as np
 from auvgym._extras import require
 from auvgym.reproduction.card import Card, swept
 from auvgym.reproduction.cells import Cell, cells
+from auvgym.reproduction.harbor_maps import draw_maps
 from auvgym.reproduction.measures import MEASURES
 from auvgym.reproduction.runs import Outcome, Run, checkpoints
 
@@ -34,6 +35,8 @@ def draw(card: Card, outcomes: Mapping[Run, Outcome], seeds: int, folder: Path) 
     figures = require("matplotlib.figure", "report")
     if card.view == "sweeps":
         figure = _sweeps(figures, card, outcomes, seeds)
+    elif card.view == "distributions":
+        figure = _distributions(figures, card, cells(card, card.columns, outcomes, seeds))
     elif card.view == "measures":
         figure = _measures(figures, card, cells(card, card.columns, outcomes, seeds))
     else:
@@ -41,6 +44,12 @@ def draw(card: Card, outcomes: Mapping[Run, Outcome], seeds: int, folder: Path) 
         figure = _panels(figures, card, cells(card, card.columns, outcomes, seeds), panel)
     name = f"{card.name}.png"
     figure.savefig(folder / name, dpi=_PIXELS_PER_INCH, metadata={"Software": None})
+    if card.protocol == "harbor":
+        maps = draw_maps(figures, card, COLOURS)
+        maps.savefig(
+            folder / f"{card.name}-maps.png", dpi=_PIXELS_PER_INCH, metadata={"Software": None}
+        )
+        return [name, f"{card.name}-maps.png"]
     return [name]
 
 
@@ -84,6 +93,31 @@ def _measures(figures: Any, card: Card, rows: list[list[Cell]]) -> Any:
         axis.grid(axis="y", alpha=0.3)
     axes[0].legend(fontsize=7, frameon=False, ncols=2)
     figure.suptitle(card.title, fontsize=11)
+    return figure
+
+
+def _distributions(figures: Any, card: Card, rows: list[list[Cell]]) -> Any:
+    """A row of panels for each measure, a panel for each case: every seed as a point."""
+    down, abreast = len(card.measures), len(rows)
+    figure = figures.Figure(figsize=(3.6 * abreast, 2.9 * down), layout="constrained")
+    axes = figure.subplots(down, abreast, squeeze=False)
+    for measure, line in zip(card.measures, axes, strict=True):
+        for axis, row in zip(line, rows, strict=True):
+            places = np.arange(len(row))
+            for place, cell in zip(places, row, strict=True):
+                values = np.array(cell.measured(measure))
+                spread = np.linspace(-0.25, 0.25, len(values))
+                colour = COLOURS[place % len(COLOURS)]
+                axis.plot(place + spread, values, ".", ms=3, color=colour, alpha=0.6)
+                axis.plot([place - 0.3, place + 0.3], [np.median(values)] * 2, color="black", lw=1)
+            paper = row[0].case.paper.get(measure, [""] * len(row))
+            known = [i for i, figure in enumerate(paper) if not isinstance(figure, str)]
+            axis.plot(known, [paper[i] for i in known], "D", mfc="none", color="black", ms=6)
+            axis.set_title(f"{row[0].case.label}: {MEASURES[measure]}", fontsize=8)
+            axis.tick_params(labelsize=8)
+            axis.grid(axis="y", alpha=0.3)
+            _name_columns(axis, row, places)
+    figure.suptitle(f"{card.title}. Line: median of our seeds; diamond: paper", fontsize=11)
     return figure
 
 

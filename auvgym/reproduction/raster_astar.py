@@ -15,13 +15,21 @@ Array = NDArray[np.float64]
 _NEIGHBOURS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]
 
 
-def raster_astar(world: auvgym.World, nodes: int = 100, heuristic: str = "manhattan") -> Array:
+def raster_astar(
+    world: auvgym.World,
+    nodes: int = 100,
+    heuristic: str = "manhattan",
+    cells: bool = False,
+    cut_corners: bool = True,
+) -> Array:
     """A* over nodes x nodes points of the box at the start's depth, with eight neighbours.
 
     Args:
         world: the world.
         nodes: along each side of the box.
         heuristic: "manhattan", which overestimates where diagonals are allowed, or "octile".
+        cells: whether nodes are the middles of cells instead of points from wall to wall.
+        cut_corners: whether a diagonal step may pass between two nodes of which one is not free.
 
     Returns:
         (n, 3) m.
@@ -30,6 +38,8 @@ def raster_astar(world: auvgym.World, nodes: int = 100, heuristic: str = "manhat
         PlanningError: there is no way on the raster.
     """
     low, high = world.domain
+    inset = (high - low) / (2 * nodes) if cells else np.zeros(3)
+    low, high = low + inset, high - inset
     xs, ys = (np.linspace(low[axis], high[axis], nodes) for axis in (0, 1))
     points = np.array([[x, y, world.start[2]] for x in xs for y in ys])
     free = (world.clearance(points) > 0.0).reshape(nodes, nodes)
@@ -56,6 +66,9 @@ def raster_astar(world: auvgym.World, nodes: int = 100, heuristic: str = "manhat
         for i, j in _NEIGHBOURS:
             other = (node[0] + i, node[1] + j)
             if not (0 <= other[0] < nodes and 0 <= other[1] < nodes and free[other]):
+                continue
+            beside = ((node[0] + i, node[1]), (node[0], node[1] + j))
+            if not (cut_corners or all(free[one] for one in beside)):
                 continue
             cost = spent[node] + float(np.hypot(i, j))
             if other not in closed and cost < spent.get(other, np.inf):

@@ -3,6 +3,7 @@
 use auv_world::math::Vec3;
 
 use crate::cost::CostTerms;
+use crate::maklink::HarborReport;
 
 /// A planner's answer. If it found no feasible path it says so and gives the best of the others.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +20,10 @@ pub struct Plan {
     pub evaluations: u64,
     /// Best total cost after so many evaluations: once for each generation, or path found.
     pub history: Vec<(u64, f64)>,
+    /// Coefficients with which the path was drawn, by name: those of the flow planners, which tune them.
+    pub coefficients: Vec<(&'static str, f64)>,
     /// Whether the caller interrupted it.
     pub interrupted: bool,
+    /// What planners in harbours say of it.
+    pub harbor: Option<Box<HarborReport>>,
 }

@@ -122,7 +122,9 @@ impl<'a> Search<'a> {
             cost,
             evaluations: self.evaluations,
             history: self.history,
+            coefficients: Vec::new(),
             interrupted: self.interrupted,
+            harbor: None,
         }
     }
 }

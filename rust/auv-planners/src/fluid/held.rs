@@ -70,7 +70,9 @@ impl Held {
             cost: self.cost?,
             evaluations: self.evaluations,
             history: self.history,
+            coefficients: Vec::new(),
             interrupted,
+            harbor: None,
         })
     }
 }

@@ -99,7 +99,9 @@ fn plan(request: &Request<'_>, method: Method) -> Result<Plan, PlanError> {
         cost,
         evaluations,
         history: vec![(evaluations, cost.total)],
+        coefficients: Vec::new(),
         interrupted: found.is_none(),
+        harbor: None,
     })
 }
 

@@ -183,7 +183,9 @@ impl<'a> Query<'a> {
             cost,
             evaluations: self.evaluations,
             history: self.history,
+            coefficients: Vec::new(),
             interrupted: self.interrupted,
+            harbor: None,
         }
     }
 }

@@ -48,6 +48,21 @@ pub enum Variant {
     Paper,
 }
 
+/// How threats manoeuvre.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Manoeuvres {
+    /// Not at all.
+    #[default]
+    None,
+    /// Each goes round in a circle of its own.
+    Turn,
+    /// Each zigzags about its course.
+    Zigzag,
+    /// Each does one of these.
+    Mixed,
+}
+
 /// Parameters of the families; what is left out follows from family, difficulty and variant. Not every
 /// family knows them all.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -58,7 +73,7 @@ pub struct Parameters {
     /// Whose distributions.
     pub variant: Variant,
     /// Number of discs (lfhh-2d 22) or spheres (lfhh-3d 70; afhh 60, 120, 200 by difficulty) or threats
-    /// (iifds 3) or polygons (harbor 5, 8, 12 by difficulty).
+    /// (iifds 3) or polygons (harbor 8, 14, 20 by difficulty).
     pub obstacles: Option<usize>,
     /// Number of vortices (6, afhh 0).
     pub vortices: Option<usize>,
@@ -80,8 +95,12 @@ pub struct Parameters {
     pub obstacle_speed_mps: Option<f64>,
     /// Speed of every vortex centre between changes (m/s), 0.
     pub vortex_drift_mps: Option<f64>,
+    /// How threats manoeuvre (iifds only), not at all.
+    pub manoeuvres: Option<Manoeuvres>,
     /// Noise of seen obstacles (m), 0 (iifds 20).
     pub sensor_noise_m: Option<f64>,
+    /// Number of vessels under way, 0 (harbor only).
+    pub vessels: Option<usize>,
 }
 
 /// Draws a scenario of a family.
@@ -89,6 +108,9 @@ pub struct Parameters {
 /// # Errors
 /// [`WorldError`] for an unknown family or a parameter that is not allowed, by name.
 pub fn generate(family: &str, seed: u64, parameters: &Parameters) -> Result<Scenario, WorldError> {
+    if parameters.manoeuvres.is_some() && family != "iifds" {
+        return Err(WorldError::parameter("manoeuvres", "given", "only the threats of the family iifds manoeuvre"));
+    }
     match family {
         "iifds" => return iifds::draw(seed, parameters),
         "harbor" => return harbor::draw(seed, parameters),
