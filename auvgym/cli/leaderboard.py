@@ -46,7 +46,11 @@ def leaderboard(
     with evaluation.Store(folder / "results.db") as store:
         if fresh:
             store.forget(instances)
-        results = fly_with_progress(instances, specs, store, workers, engine.value, step_limit)
+        # All there is: each where it can fly at all. Who is named flies everywhere.
+        flies = evaluation.fitting if policies == "all" else None
+        results = fly_with_progress(
+            instances, specs, store, workers, engine.value, step_limit, flies
+        )
     show(results)
     output().print(f"Episodes: {folder / 'results.db'}", soft_wrap=True)
     page = _write_page(instances, results, folder / "leaderboard.html")
