@@ -84,6 +84,7 @@ def test_a_difference_of_the_detectable_size_is_found_four_times_in_five() -> No
         compare(board(a=list(base), b=list(base + noise[0])), "a", resamples=10),
         key=lambda one: one.policy,
     )
+    assert other.detectable is not None
     found = []
     for one in noise[1:]:
         shifted = base + one + other.detectable

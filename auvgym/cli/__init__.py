@@ -13,6 +13,7 @@ from auvgym.cli.leaderboard import leaderboard
 from auvgym.cli.listing import list_names
 from auvgym.cli.plan import plan
 from auvgym.cli.replay import replay
+from auvgym.cli.report import report
 from auvgym.cli.reproduce import reproduce
 from auvgym.cli.suite import suite
 from auvgym.cli.verify import verify
@@ -46,6 +47,7 @@ app.command("replay")(replay)
 app.command("reproduce")(reproduce)
 app.command("suite")(suite)
 app.command("verify")(verify)
+app.command("report")(report)
 app.command("export")(export)
 
 

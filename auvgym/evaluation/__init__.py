@@ -9,7 +9,7 @@ from __future__ import annotations
 from auvgym.evaluation.flight import Flight
 from auvgym.evaluation.replay import Replay, ReplayError, replay
 from auvgym.evaluation.result import EpisodeResult, PolicySpec
-from auvgym.evaluation.runner import run
+from auvgym.evaluation.runner import fitting, run
 from auvgym.evaluation.store import Store, StoreError
 from auvgym.evaluation.suite import Instance, Suite, SuiteError, single_suite
 from auvgym.evaluation.suite_file import list_suites, load_suite
@@ -29,6 +29,7 @@ __all__ = [
     "Suite",
     "SuiteError",
     "Verification",
+    "fitting",
     "list_suites",
     "load_suite",
     "replay",

@@ -5,19 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import replace
-from typing import Literal
+from functools import lru_cache
+from typing import Any, Literal
 
 import auvgym
 from auvgym import policies
 from auvgym.evaluation.result import EpisodeResult, PolicySpec
 from auvgym.evaluation.store import Store, key, result_key
-from auvgym.evaluation.suite import Suite, SuiteError
+from auvgym.evaluation.suite import Instance, Suite, SuiteError
 from auvgym.evaluation.task import Task, environment, lost, run_task
 from auvgym.evaluation.workers import ProcessDiedError, run_tasks
 from auvgym.policies.registry import is_shipped
 
 # Called with each episode as it is stored, the number stored so far, and the number in all.
 OnEpisode = Callable[[EpisodeResult, int, int], None]
+# Whether a policy flies an instance.
+Flies = Callable[[PolicySpec, Instance], bool]
 Engine = Literal["processes", "ray"]
 STEP_LIMIT_S = 120.0
 
@@ -30,6 +33,7 @@ def run(
     on_episode: OnEpisode | None = None,
     engine: Engine = "processes",
     step_limit_s: float | None = STEP_LIMIT_S,
+    flies: Flies | None = None,
 ) -> list[EpisodeResult]:
     """Fly every (policy, instance) pair that ``store`` does not hold yet.
 
@@ -49,6 +53,8 @@ def run(
             which ``ray.init()`` finds or this machine, with ``workers`` tasks at a time.
         step_limit_s: wall clock that one call of a policy may take; None for no limit. It does not
             hold for auvgym's own policies in this process.
+        flies: which pairs are flown; by default all. :func:`fitting` leaves out planners where they
+            cannot plan.
 
     Returns:
         The results of these policies on this suite, those of earlier runs included.
@@ -86,6 +92,7 @@ def run(
         )
         for instance in suite.instances
         for spec, policy in zip(specs, made, strict=True)
+        if flies is None or flies(spec, instance)
     }
     finished = store.finished(suite)
     tasks = [task for name, task in pairs.items() if name not in finished]
@@ -100,6 +107,28 @@ def run(
             if on_episode is not None:
                 on_episode(result, done, len(pairs))
     return [result for result in store.results(suite) if result_key(result) in pairs]
+
+
+def fitting(spec: PolicySpec, instance: Instance) -> bool:
+    """Whether a policy can fly an instance at all: a planner for harbours plans in no tank.
+
+    A planner is asked for a plan of one evaluation in a world of the instance's kind; everybody
+    else can.
+    """
+    if spec.name not in auvgym.list_planners():
+        return True
+    return _can_plan(spec.name, replace(instance, seed=0))
+
+
+@lru_cache(maxsize=512)
+def _can_plan(planner: str, instance: Instance) -> bool:
+    env: Any = environment(instance)
+    env.reset(seed=instance.seed)
+    try:
+        auvgym.plan(env.unwrapped.world, planner, max_evaluations=1)
+    except auvgym.PlanningError:
+        return False
+    return True
 
 
 def _results(

@@ -67,7 +67,8 @@ class Comparison:
             5 %, ``""`` the reference.
         difference: mean score less the reference's.
         detectable: the least true difference of mean scores that so many instances show with a
-            probability of 80 % at 5 %; a smaller one may be there and not be seen.
+            probability of 80 % at 5 %; a smaller one may be there and not be seen. None for the
+            reference.
         wins: instances on which no policy has a better score, and this one arrives.
         virtual_best_ratio: mean score over that of the virtual best, which picks the best policy
             for each instance.
@@ -83,7 +84,7 @@ class Comparison:
     p_value: float | None
     sign: str
     difference: float
-    detectable: float
+    detectable: float | None
     wins: int
     virtual_best_ratio: float
 
@@ -211,7 +212,7 @@ def _compare(table: Table, reference: str | None, resamples: int, seed: int) -> 
                 p_value=None if itself else p_value,
                 sign="" if itself else _sign(p_value, tests[index].direction),
                 difference=float(difference.mean()),
-                detectable=0.0 if itself else (_Z_TEST + _Z_POWER) * spread / count**0.5,
+                detectable=None if itself else (_Z_TEST + _Z_POWER) * spread / count**0.5,
                 wins=int(((own >= best) & (own > 0.0)).sum()),
                 virtual_best_ratio=float(own.mean() / best.mean()) if best.any() else 0.0,
             )

@@ -29,8 +29,11 @@ class ProcessDiedError(Exception):
     """
 
     def __init__(self, exit_code: int | None) -> None:
-        super().__init__(f"the process ended with exit code {exit_code}")
+        super().__init__(exit_code)  # what a pickle makes it of again
         self.exit_code = exit_code
+
+    def __str__(self) -> str:
+        return f"the process ended with exit code {self.exit_code}"
 
 
 class StartError(RuntimeError):

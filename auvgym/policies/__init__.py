@@ -7,11 +7,13 @@ own is a class with ``reset(env)`` or ``reset(observation, info)``, and
 
 from __future__ import annotations
 
+from auvgym.policies.agents import CodeWarning
 from auvgym.policies.base import Knows, Policy, PolicyError, ScriptedPolicy, begin
 from auvgym.policies.planner import PlannerPolicy
 from auvgym.policies.registry import frozen_parameters, list_policies, make
 
 __all__ = [
+    "CodeWarning",
     "Knows",
     "PlannerPolicy",
     "Policy",
