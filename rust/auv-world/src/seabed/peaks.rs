@@ -175,9 +175,9 @@ impl PeakFloor {
             let (dx, dy) = (px - x, py - y);
             let u = (ax * dx * dx + ay * dy * dy).sqrt();
             let free = distance_bound(height, steepness, u, floor - pz, f64::INFINITY);
-            going = going & free.simd_ge(touch);
+            going &= free.simd_ge(touch);
             range = going.select((range + free).fast_min(longest), range);
-            going = going & range.simd_lt(longest);
+            going &= range.simd_lt(longest);
             if !going.any() {
                 break;
             }
