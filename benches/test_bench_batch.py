@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import os
 import time
-import warnings
 from collections.abc import Iterator
 from typing import Any
 
@@ -93,13 +92,12 @@ def test_stable_baselines_batch_of_256(benchmark: Any, table: list[str], env_id:
     measure(benchmark, lambda i: envs.step(actions[i]), f"sb3 {env_id}", table)
 
 
+@pytest.mark.filterwarnings("ignore")  # about its own spaces
 @pytest.mark.parametrize("env_id", ["Pendulum-v1", "LunarLanderContinuous-v3"])
 def test_envpool_batch_of_256(benchmark: Any, table: list[str], env_id: str) -> None:
     """EnvPool's own engine, for comparison: a step of these is one tick of physics."""
     envpool = pytest.importorskip("envpool")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # about its own spaces
-        envs = envpool.make_gymnasium(env_id, num_envs=COUNT, num_threads=THREADS)
+    envs = envpool.make_gymnasium(env_id, num_envs=COUNT, num_threads=THREADS)
     envs.reset()
     low, high = envs.action_space.low, envs.action_space.high
     shape = (ROUND, COUNT, *envs.action_space.shape)

@@ -12,9 +12,10 @@ parser = argparse.ArgumentParser(description=__doc__)
 parser.add_argument("--env", default="AUVDynamic2D-v0")
 parser.add_argument("--timesteps", type=int, default=500_000)
 parser.add_argument("--envs", type=int, default=128)
+parser.add_argument("--tests", type=int, default=256, help="episodes flown afterwards")
 options = parser.parse_args()
 
-torch.set_num_threads(2)
+torch.set_num_threads(1)  # small networks are slower on more
 model = PPO(
     "MlpPolicy",
     auvgym.sb3.make_vec_env(options.env, n_envs=options.envs, seed=0),
@@ -30,7 +31,9 @@ model = PPO(
 model.learn(options.timesteps)
 model.save("ppo")
 
-tests = auvgym.sb3.make_vec_env(options.env, n_envs=64, seed=10_000)
-returns, _ = evaluate_policy(model, tests, n_eval_episodes=256, return_episode_rewards=True)
+tests = auvgym.sb3.make_vec_env(options.env, n_envs=min(options.tests, 64), seed=10_000)
+returns, _ = evaluate_policy(
+    model, tests, n_eval_episodes=options.tests, return_episode_rewards=True
+)
 # Whatever arrives sums to more than 0, whatever fails to less: see docs/environments.md.
 print(f"arrived: {sum(value > 0 for value in returns) / len(returns):.1%}")

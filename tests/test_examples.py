@@ -70,7 +70,9 @@ def test_own_policy(tmp_path: Path) -> None:
 
 def test_train_sb3(tmp_path: Path) -> None:
     pytest.importorskip("torch")
-    printed = run_example("train_sb3.py", "--timesteps", "512", "--envs", "8", folder=tmp_path)
+    printed = run_example(
+        "train_sb3.py", "--timesteps", "512", "--envs", "8", "--tests", "4", folder=tmp_path
+    )
     assert re.search(r"arrived: \d+\.\d%", printed)
     assert (tmp_path / "ppo.zip").is_file()
 

@@ -16,7 +16,12 @@ use crate::scenario::{Peak, Peaks};
 #[inline(always)]
 fn falls_by(u: f64x4) -> f64x4 {
     let u = u.fast_max(f64x4::ZERO);
-    let s = f64x4::HALF * u * u;
+    series(f64x4::HALF * u * u)
+}
+
+/// At most exp(s) for s not negative.
+#[inline(always)]
+fn series(s: f64x4) -> f64x4 {
     f64x4::ONE + s * (f64x4::ONE + s * (f64x4::HALF + s * f64x4::splat(1.0 / 6.0)))
 }
 
@@ -145,7 +150,7 @@ impl PeakFloor {
             let least = (q0 + closest * (q1 + q1 + q2 * closest)).fast_max(f64x4::ZERO);
             let lowest = above.fast_min(above - range * beams[2]);
             // Most beams pass far too high for an exponential; by more than its rounding.
-            let passes = (lowest * falls_by(least.sqrt())).simd_ge(f64x4::splat(self.height[i] * (1.0 + 1e-9)));
+            let passes = (lowest * series(f64x4::HALF * least)).simd_ge(f64x4::splat(self.height[i] * (1.0 + 1e-9)));
             if passes.all() {
                 continue;
             }
@@ -209,6 +214,18 @@ mod tests {
         for i in -10..1000 {
             let u = 0.01 * f64::from(i);
             assert!(falls_by(f64x4::splat(u)).to_array()[0] <= libm::exp(0.5 * u.max(0.0) * u.max(0.0)));
+        }
+    }
+
+    /// The bound that spares an exponential never overrules it.
+    #[test]
+    fn what_passes_does_not_rise() {
+        for i in 0..20_000 {
+            let s = f64x4::splat(0.0005 * f64::from(i));
+            for lowest in [1.0 - 1e-15, 1.0, 1.0 + 1e-15, 1.0 + 2e-9].map(|off| exp4(-s) * f64x4::splat(off)) {
+                let passes = (lowest * series(s)).simd_ge(f64x4::splat(1.0 + 1e-9));
+                assert!(!(passes & exp4(-s).simd_gt(lowest)).any());
+            }
         }
     }
 
