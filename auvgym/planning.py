@@ -285,8 +285,7 @@ def _window(window: int) -> int:
 
 
 def _plan(found: _core.FoundPlan) -> Plan:
-    *parts, harbor = found
-    return Plan(*parts, harbor=None if harbor is None else HarborReport(*harbor))
+    return Plan(*found[:7], harbor=None if found[7] is None else HarborReport(*found[7]))
 
 
 def _check_planner(planner: str) -> None:
