@@ -29,12 +29,14 @@ class HarborReport:
         corners: the path before smoothing, (n, 3) float64 m.
         trace: the least value so far of what the planner minimises against evaluations, (m, 2)
             float64: of swarms and ants the cost F, generation by generation, else the length, m.
+        barriers: where there is no way, the polygons whose zones part the goal from the start.
     """
 
     gap_m: float | None
     depth_m: float
     corners: Array = field(repr=False)
     trace: Array = field(repr=False)
+    barriers: list[int]
 
 
 @dataclass(frozen=True, eq=False)

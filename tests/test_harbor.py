@@ -149,6 +149,7 @@ def test_parted_water_has_no_route() -> None:
     assert not plan.feasible
     assert plan.harbor is not None
     assert plan.harbor.gap_m is None
+    assert plan.harbor.barriers == [5]
     assert auvgym.gap(world, plan) == np.inf
 
 
@@ -272,9 +273,7 @@ def test_other_currents_are_allowed() -> None:
     scenario["currents"] = [
         {
             "kind": "vortices",
-            "vortices": [
-                {"x_m": 80.0, "y_m": 150.0, "circulation_m2ps": 60.0}
-            ],
+            "vortices": [{"x_m": 80.0, "y_m": 150.0, "circulation_m2ps": 60.0}],
             "core_radius_m": 20.0,
         }
     ]
