@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 __all__ = [
     "ActionError",
+    "Batch",
     "Episode",
     "Navigator",
     "PlanningError",
@@ -26,6 +27,7 @@ __all__ = [
     "list_planners",
     "maklink",
     "observation_layout",
+    "outcomes",
     "path_cost",
     "plan",
     "replan",
@@ -42,7 +44,8 @@ _Point: TypeAlias = tuple[float, float, float]
 FoundReport: TypeAlias = tuple[
     float | None, float, NDArray[np.float64], NDArray[np.float64], list[int]
 ]
-# (planner, waypoints (n, 3), feasible, cost, evaluations, history (m, 2), window, harbor).
+# (planner, waypoints (n, 3), feasible, cost, evaluations, history (m, 2), window, harbor,
+# coefficients).
 FoundPlan: TypeAlias = tuple[
     str,
     NDArray[np.float64],
@@ -52,6 +55,7 @@ FoundPlan: TypeAlias = tuple[
     NDArray[np.float64],
     int | None,
     FoundReport | None,
+    dict[str, float],
 ]
 # (ring (n, 2), numbers) of each zone or cell.
 FoundRings: TypeAlias = list[tuple[NDArray[np.float64], list[int]]]
@@ -209,6 +213,26 @@ class Episode:
     def __reduce__(self) -> tuple[Any, tuple[bytes]]: ...
 
 @final
+class Batch:
+    """Many episodes at once."""
+
+    def __new__(
+        cls, source: Source, count: int, threads: int, autoreset: str, record: bool
+    ) -> Batch: ...
+    def __len__(self) -> int: ...
+    @property
+    def threads(self) -> int: ...
+    def reset(self, seeds: NDArray[np.uint64], mask: NDArray[np.bool_]) -> NDArray[np.float32]: ...
+    def step(
+        self, actions: NDArray[np.float32], seeds: NDArray[np.uint64]
+    ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_]]: ...
+    def info(self, last: bool) -> dict[str, NDArray[Any]]: ...
+    def last_observation(self, index: int) -> NDArray[np.float32]: ...
+    def episode(self, index: int) -> Episode: ...
+    def replace(self, index: int, episode: Episode) -> None: ...
+    def charge(self, index: int, evaluations: int, replans: int) -> None: ...
+
+@final
 class TimeField:
     """Times to the goal over a grid, through the world as it was when this was made."""
 
@@ -259,6 +283,7 @@ class Navigator:
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
 
 def families() -> list[str]: ...
+def outcomes() -> list[str]: ...
 def observation_layout(dimensions: int) -> list[tuple[str, int, int, float, float, str]]: ...
 def sonar_directions(dimensions: int) -> NDArray[np.float64]: ...
 def list_planners() -> list[str]: ...

@@ -52,6 +52,8 @@ class Plan:
         history: best total cost against evaluations so far, (m, 2) float64.
         window: sections of the last planning window, where one was used.
         harbor: what planners of harbours say of the path; None from others.
+        coefficients: those of the flow that drew the path (``rho``, ``sigma``, ``theta``, ``lambda``),
+            chosen or tuned; empty for all but the planners ``iifds``.
     """
 
     planner: str
@@ -62,6 +64,7 @@ class Plan:
     history: Array = field(repr=False)
     window: int | None = None
     harbor: HarborReport | None = None
+    coefficients: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -287,7 +290,8 @@ def _window(window: int) -> int:
 
 
 def _plan(found: _core.FoundPlan) -> Plan:
-    return Plan(*found[:7], harbor=None if found[7] is None else HarborReport(*found[7]))
+    report = None if found[7] is None else HarborReport(*found[7])
+    return Plan(*found[:7], report, found[8])
 
 
 def _check_planner(planner: str) -> None:

@@ -18,4 +18,7 @@ def register_environments() -> None:
     """Register every environment that is not registered yet."""
     for name, entry_point in ENVIRONMENTS.items():
         if name not in gymnasium.registry:
-            gymnasium.register(id=name, entry_point=entry_point)
+            vector_entry_point = entry_point.replace("auvgym.envs:", "auvgym.vector.entry:")
+            gymnasium.register(
+                id=name, entry_point=entry_point, vector_entry_point=vector_entry_point
+            )

@@ -72,7 +72,8 @@ class Scenario:
                 ``peaks`` (numbers), ``current_ratio`` (fastest summed current over vehicle
                 speed), ``ring_ratio`` (instead: one vortex's ring speed over vehicle speed),
                 ``time_factor``, ``vehicle_speed_mps``, ``change_every_m``,
-                ``obstacle_speed_mps``, ``vortex_drift_mps``, ``sensor_noise_m``.
+                ``obstacle_speed_mps``, ``vortex_drift_mps``, ``manoeuvres`` ("none", "turn",
+                "zigzag", "mixed"), ``sensor_noise_m``.
 
         Raises:
             ValueError: naming the family or parameter, its value and what was allowed.

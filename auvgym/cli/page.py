@@ -40,6 +40,7 @@ def write_leaderboard_page(
     """
     from auvgym import __version__, evaluation, report
     from auvgym.cli.tables import explanation
+    from auvgym.evaluation.suite import stratum_label
 
     summaries = evaluation.summarise(results)
     episodes: dict[str, Any] = {}
@@ -48,7 +49,7 @@ def write_leaderboard_page(
         # Space before plane: the page opens on the first.
         shown.sort(key=lambda pair: -pair[0].flight.maps[0][1].dimensions)
         for replayed, row in shown:
-            label = " · ".join(part for part in (*row.instance.stratum, row.policy) if part)
+            label = f"{stratum_label(row.instance.stratum)} · {row.policy}"
             episodes[label] = episode_figure(replayed, row)
     page = report.leaderboard_page(
         [_cells(summary) for summary in summaries],
@@ -119,8 +120,10 @@ def _worth_watching(
 
 
 def _cells(summary: PolicySummary) -> dict[str, Any]:
+    from auvgym.evaluation.suite import stratum_label
+
     return {
-        "environment": " · ".join(part for part in summary.stratum if part),
+        "environment": stratum_label(summary.stratum),
         "policy": summary.policy,
         "knows": summary.knows,
         "solved": f"{summary.solved}/{summary.episodes}",

@@ -78,11 +78,13 @@ COLUMNS = (
 
 
 def ranked_tables(summaries: Sequence[PolicySummary], columns: Sequence[Column]) -> Iterator[Table]:
-    """One table per stratum (environment, difficulty, scenario)."""
+    """One table per stratum (environment, difficulty, scenario, settings)."""
+    from auvgym.evaluation.suite import stratum_label
+
     for stratum, group in groupby(summaries, key=lambda row: row.stratum):
         rows = list(group)
         episodes = max(row.episodes for row in rows)
-        title = " · ".join(part for part in stratum if part)
+        title = stratum_label(stratum)
         table = Table(
             title=Text(f"{title} · {episodes} episodes", style="bold"),
             title_justify="left",

@@ -10,7 +10,8 @@ class AUVThreat3DEnv(AUVEnv):
     A vehicle of 2 m/s goes 14.1 km from corner to corner of a box of 10 x 10 x 4 km, at 3 km depth,
     through a meandering jet at rest, among three threats: spheres of 500 to 1000 m radius that move
     all the time, each on a level course at constant speed that meets a vehicle on the straight way
-    or nearly so (after Yao & Zhao 2018). A threat that comes to a wall of the box is reflected. The
+    or nearly so (after Yao & Zhao 2018). With ``manoeuvres`` they turn or zigzag on the way, and are seen to
+    do so only as they do it. A threat that comes to a wall of the box is reflected. The
     map never changes otherwise. The water moves the vehicle always, but no threat; line-of-sight
     guidance crabs against it where it can.
 
@@ -94,6 +95,7 @@ class AUVThreat3DEnv(AUVEnv):
       jet of 0.2, 0.5 or 0.7 V on its centre line, time factor 1.5, 1.75 or 2.
     - ``obstacles`` (3); ``obstacle_speed_mps``: of the fastest threat; ``current_ratio``: the jet's
       speed over V, 0 for still water; ``time_factor``; ``vehicle_speed_mps``;
+      ``manoeuvres``: "none" (default), "turn" (each in a circle), "zigzag" or "mixed";
       ``sensor_noise_m`` (20; 0: exact).
     - ``action_mode``: "waypoint". ``render_mode``: None, "human" or "rgb_array".
 

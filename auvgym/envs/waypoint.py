@@ -57,6 +57,7 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
         change_every_m: float | None = None,
         obstacle_speed_mps: float | None = None,
         vortex_drift_mps: float | None = None,
+        manoeuvres: str | None = None,
         sensor_noise_m: float | None = None,
         vessels: int | None = None,
         render_mode: str | None = None,
@@ -88,6 +89,7 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
             "change_every_m": change_every_m,
             "obstacle_speed_mps": obstacle_speed_mps,
             "vortex_drift_mps": vortex_drift_mps,
+            "manoeuvres": manoeuvres,
             "sensor_noise_m": sensor_noise_m,
             "vessels": vessels,
         }

@@ -16,6 +16,8 @@ MEASURES = {
     "length_km": "Length (km)",
     "angle_rad": "Mean angle to the current (rad)",
     "objective": "A = eta1 A1 + eta2 A2",
+    "lambda": "lambda, the share of the way to the goal in the flow",
+    "time_s": "Travel time (s) of a vehicle that crabs along the path",
     "clearance_km": "Least clearance (km), at least; negative inside",
     "threat_km": "Least distance to a threat's surface (km); negative inside",
     "hits": "Points of the path inside something solid",
@@ -55,6 +57,7 @@ def of_path(world: auvgym.World, path: Array, objective: dict[str, Any]) -> dict
     sharpest = np.arccos(np.clip(cosines, -1.0, 1.0)).max(initial=0.0)
     return {
         **flow_terms(world, path, objective),
+        "time_s": auvgym.path_cost(world, path, cost="time")["time_s"],
         "clearance_km": float(clearances.min()) / _KM,
         "hits": float(np.count_nonzero(clearances <= 0.0)),
         "turn_deg": float(np.rad2deg(sharpest)),

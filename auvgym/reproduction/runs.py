@@ -122,15 +122,17 @@ def _path(run: Run) -> Outcome:
     world = auvgym.World(run.scenario, seed=run.seed, mission=run.mission)
     parameters = json.loads(run.parameters)
     objective = parameters.get("objective", {})
-    evaluations, feasible = 0, True
+    evaluations, feasible, coefficients = 0, True, {}
     began = time.process_time()
     if run.planner == "raster-astar":
         path = raster_astar(world, **parameters)
     else:
         plan = auvgym.plan(world, run.planner, seed=run.seed, **parameters)
         path, feasible, evaluations = plan.waypoints, plan.feasible, plan.evaluations
+        coefficients = plan.coefficients
     seconds = time.process_time() - began
-    measures = {**of_path(world, path, objective), "evaluations": float(evaluations)}
+    found = of_path(world, path, objective)
+    measures = {**coefficients, **found, "evaluations": float(evaluations)}
     return Outcome(measures["objective"], feasible, evaluations, seconds, measures=measures)
 
 

@@ -20,6 +20,8 @@ pub struct Plan {
     pub evaluations: u64,
     /// Best total cost after so many evaluations: once for each generation, or path found.
     pub history: Vec<(u64, f64)>,
+    /// Coefficients with which the path was drawn, by name: those of the flow planners, which tune them.
+    pub coefficients: Vec<(&'static str, f64)>,
     /// Whether the caller interrupted it.
     pub interrupted: bool,
     /// What planners in harbours say of it.

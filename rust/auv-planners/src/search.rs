@@ -122,6 +122,7 @@ impl<'a> Search<'a> {
             cost,
             evaluations: self.evaluations,
             history: self.history,
+            coefficients: Vec::new(),
             interrupted: self.interrupted,
             harbor: None,
         }

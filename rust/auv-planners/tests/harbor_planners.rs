@@ -206,7 +206,7 @@ fn start_in_a_zone_is_led_out_or_refused() {
 fn discs_and_cylinders_are_taken_as_polygons() {
     let mut scenario = scenario("harbor-p");
     scenario.obstacles = vec![
-        Obstacle::Disc(Disc { position_m: [90.0, 135.0], radius_m: 20.0, velocity_mps: [0.0; 2] }),
+        Obstacle::Disc(Disc { position_m: [90.0, 135.0], radius_m: 20.0, velocity_mps: [0.0; 2], manoeuvre: None }),
         Obstacle::Cylinder(Cylinder {
             position_m: [120.0, 90.0],
             radius_m: 10.0,

@@ -25,7 +25,12 @@ fn empty() -> Scenario {
 
 fn disc_world() -> World {
     let mut scenario = empty();
-    scenario.obstacles.push(Obstacle::Disc(Disc { position_m: CENTRE, radius_m: RADIUS, velocity_mps: [0.0; 2] }));
+    scenario.obstacles.push(Obstacle::Disc(Disc {
+        position_m: CENTRE,
+        radius_m: RADIUS,
+        velocity_mps: [0.0; 2],
+        manoeuvre: None,
+    }));
     World::new(scenario, 0, 0).unwrap()
 }
 

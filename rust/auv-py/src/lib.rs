@@ -1,5 +1,6 @@
 //! `auvgym._core`: the engine as Python sees it. Bindings only; the Python package wraps them.
 
+mod batch;
 mod episode;
 mod errors;
 mod field;
@@ -17,6 +18,8 @@ use pyo3::prelude::*;
 /// The compiled engine of auvgym.
 #[pymodule]
 mod _core {
+    #[pymodule_export]
+    use crate::batch::{Batch, outcomes};
     #[pymodule_export]
     use crate::episode::{Episode, Source, observation_layout, sonar_directions};
     #[pymodule_export]

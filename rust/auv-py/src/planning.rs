@@ -14,7 +14,7 @@ use crate::interrupt::Signals;
 use crate::points;
 use crate::world::World;
 
-/// (planner, waypoints, feasible, cost, evaluations, history, window, harbor).
+/// (planner, waypoints, feasible, cost, evaluations, history, window, harbor, coefficients).
 type FoundPlan<'py> = (
     String,
     Bound<'py, PyArray2<f64>>,
@@ -24,6 +24,7 @@ type FoundPlan<'py> = (
     Bound<'py, PyArray2<f64>>,
     Option<usize>,
     Option<HarborReport<'py>>,
+    Bound<'py, PyDict>,
 );
 
 /// (gap_m, depth_m, corners, trace, barriers).
@@ -60,7 +61,12 @@ fn found(py: Python<'_>, plan: auv_planners::Plan, window: Option<usize>) -> PyR
         }
         None => None,
     };
-    Ok((plan.planner, waypoints, plan.feasible, terms(py, &plan.cost)?, plan.evaluations, history, window, harbor))
+    let coefficients = PyDict::new(py);
+    for (name, value) in &plan.coefficients {
+        coefficients.set_item(name, value)?;
+    }
+    let cost = terms(py, &plan.cost)?;
+    Ok((plan.planner, waypoints, plan.feasible, cost, plan.evaluations, history, window, harbor, coefficients))
 }
 
 /// Best values against evaluations, (m, 2) float64.

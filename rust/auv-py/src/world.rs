@@ -185,6 +185,10 @@ fn snapshot(world: &auv_world::World) -> serde_json::Result<Value> {
         }
         value["position_m"] = json!(position);
         value["velocity_mps"] = json!(world.obstacle_velocity(i));
+        // What it will do next nobody sees.
+        if let Some(fields) = value.as_object_mut() {
+            fields.remove("manoeuvre");
+        }
         obstacles.push(value);
     }
     let field = world.vortices();

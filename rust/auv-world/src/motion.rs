@@ -1,4 +1,45 @@
-//! How things move between map changes: at constant velocity, reflected by the walls of the box.
+//! How things move between map changes: at constant velocity, or as their manoeuvre has it, reflected by the
+//! walls of the box. Places are functions of the time alone, so that time may run either way.
+
+use crate::math::{Vec3, sub};
+use crate::scenario::{Domain, Manoeuvre};
+
+/// Something that moves from where it last was put.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Body {
+    /// Where it was put (m).
+    pub base: Vec3,
+    /// Its velocity (m/s) but for manoeuvres.
+    pub velocity: Vec3,
+}
+
+impl Body {
+    /// Where it is (m), put there at the first time and looked for at the second (s).
+    #[inline]
+    pub fn place(&self, manoeuvre: Option<&Manoeuvre>, times: [f64; 2], domain: &Domain) -> Vec3 {
+        let travel = self.travel(manoeuvre, times);
+        std::array::from_fn(|axis| reflect(self.base[axis], travel[axis], domain.min_m[axis], domain.max_m[axis]))
+    }
+
+    /// Its velocity then (m/s), turned about by the walls it has met.
+    pub fn velocity(&self, manoeuvre: Option<&Manoeuvre>, times: [f64; 2], domain: &Domain) -> Vec3 {
+        let travel = self.travel(manoeuvre, times);
+        let velocity = manoeuvre.map_or(self.velocity, |manoeuvre| manoeuvre.velocity(self.velocity, times[1]));
+        std::array::from_fn(|axis| {
+            let away = reflects(self.base[axis], travel[axis], domain.min_m[axis], domain.max_m[axis]);
+            if away { -velocity[axis] } else { velocity[axis] }
+        })
+    }
+
+    /// How far it has gone (m) but for walls.
+    #[inline]
+    fn travel(&self, manoeuvre: Option<&Manoeuvre>, [put, now]: [f64; 2]) -> Vec3 {
+        match manoeuvre {
+            None => self.velocity.map(|speed| speed * (now - put)),
+            Some(manoeuvre) => sub(manoeuvre.travel(self.velocity, now), manoeuvre.travel(self.velocity, put)),
+        }
+    }
+}
 
 /// Where `start` is after `travel` metres along one axis between two walls.
 #[inline]

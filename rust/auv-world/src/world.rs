@@ -12,10 +12,10 @@ use crate::currents::{GriddedField, VortexField, jet_velocity, scale_to_peak};
 use crate::error::WorldError;
 use crate::lanes::LANES;
 use crate::math::{Vec2, Vec3, distance, norm};
-use crate::motion::{reflect, reflects};
+use crate::motion::Body;
 use crate::obstacles::{Beams, Discs, Solid, Spheres, polygon::Prism};
 use crate::rng::{Purpose, Stream};
-use crate::scenario::{Change, Current, Hold, Jet, Mission, Obstacle, Redraw, Scenario, Seabed};
+use crate::scenario::{Change, Current, Hold, Jet, Manoeuvre, Mission, Obstacle, Redraw, Scenario, Seabed};
 use crate::seabed::Floor;
 
 /// A map change that has happened.
@@ -46,13 +46,6 @@ enum Slot {
     Sphere(usize),
     Disc(usize),
     Solid(usize),
-}
-
-/// Something that moves at constant velocity from where it last was put.
-#[derive(Debug, Clone, Copy)]
-struct Body {
-    base: Vec3,
-    velocity: Vec3,
 }
 
 /// One scenario at one time.
@@ -179,9 +172,12 @@ impl World {
         spheres.arrange();
         let steady = gridded.iter().all(GriddedField::is_steady)
             && jets.iter().all(|jet| jet.time_scale_s.is_none())
-            && bodies.iter().chain(&eddies).all(|body| body.velocity == [0.0; 3]);
+            && bodies.iter().chain(&eddies).all(|body| body.velocity == [0.0; 3])
+            && scenario.obstacles.iter().all(|obstacle| obstacle.manoeuvre().is_none());
         let extents = scenario.obstacles.iter().map(Obstacle::extent_m).collect();
         let fastest_obstacle = bodies.iter().map(|body| norm(body.velocity)).fold(0.0, f64::max);
+        let manoeuvres = scenario.obstacles.iter().filter_map(Obstacle::manoeuvre);
+        let fastest_obstacle = manoeuvres.map(Manoeuvre::fastest_mps).fold(fastest_obstacle, f64::max);
         let fixed = Arc::new(Fixed { scenario, floor, gridded, jets, uniform, steady, extents, fastest_obstacle });
         Self {
             fixed,
@@ -284,17 +280,13 @@ impl World {
     /// Position (m) of obstacle `i` at the present time.
     #[inline]
     pub fn obstacle_position(&self, i: usize) -> Vec3 {
-        if self.fixed.fastest_obstacle == 0.0 { self.bodies[i].base } else { self.place(self.bodies[i]) }
+        if self.fixed.fastest_obstacle == 0.0 { self.bodies[i].base } else { self.place_obstacle(i) }
     }
 
     /// Velocity (m/s) of obstacle `i` at the present time, turned about by the walls it has met.
     pub fn obstacle_velocity(&self, i: usize) -> Vec3 {
-        let (body, elapsed, domain) = (self.bodies[i], self.since_change(), &self.fixed.scenario.domain);
-        std::array::from_fn(|axis| {
-            let (low, high) = (domain.min_m[axis], domain.max_m[axis]);
-            let away = reflects(body.base[axis], body.velocity[axis] * elapsed, low, high);
-            if away { -body.velocity[axis] } else { body.velocity[axis] }
-        })
+        let manoeuvre = self.fixed.scenario.obstacles[i].manoeuvre();
+        self.bodies[i].velocity(manoeuvre, self.times(), &self.fixed.scenario.domain)
     }
 
     /// Radius (m) of a ball or circle that holds each obstacle.
@@ -318,22 +310,20 @@ impl World {
         }
     }
 
-    fn since_change(&self) -> f64 {
-        self.time_s - self.changes.last().map_or(0.0, |change| change.time_s)
+    /// When everything last was put somewhere, and the present (s).
+    fn times(&self) -> [f64; 2] {
+        [self.changes.last().map_or(0.0, |change| change.time_s), self.time_s]
     }
 
-    fn place(&self, body: Body) -> Vec3 {
-        let elapsed = self.since_change();
-        let domain = &self.fixed.scenario.domain;
-        std::array::from_fn(|axis| {
-            reflect(body.base[axis], body.velocity[axis] * elapsed, domain.min_m[axis], domain.max_m[axis])
-        })
+    fn place_obstacle(&self, i: usize) -> Vec3 {
+        let manoeuvre = self.fixed.scenario.obstacles[i].manoeuvre();
+        self.bodies[i].place(manoeuvre, self.times(), &self.fixed.scenario.domain)
     }
 
     /// Puts everything that moves where it belongs now.
     fn refresh(&mut self) {
         for i in 0..self.bodies.len() {
-            let position = self.place(self.bodies[i]);
+            let position = self.place_obstacle(i);
             match self.slots[i] {
                 Slot::Sphere(slot) => self.spheres.place(slot, position),
                 Slot::Disc(slot) => self.discs.place(slot, [position[0], position[1]]),
@@ -342,7 +332,7 @@ impl World {
         }
         self.spheres.arrange();
         for i in 0..self.eddies.len() {
-            let position = self.place(self.eddies[i]);
+            let position = self.eddies[i].place(None, self.times(), &self.fixed.scenario.domain);
             self.vortices.place(i, [position[0], position[1]]);
         }
     }
@@ -459,7 +449,7 @@ impl World {
             Hold::Vehicle => &protected[..1],
         };
         for (i, obstacle) in fixed.scenario.obstacles.iter().enumerate() {
-            let old = self.place(self.bodies[i]);
+            let old = self.place_obstacle(i);
             let new = target(i, old);
             let near = |point: &Vec3| {
                 let point = if obstacle.is_flat() { [point[0], point[1], new[2]] } else { *point };

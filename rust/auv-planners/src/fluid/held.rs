@@ -70,6 +70,7 @@ impl Held {
             cost: self.cost?,
             evaluations: self.evaluations,
             history: self.history,
+            coefficients: Vec::new(),
             interrupted,
             harbor: None,
         })

@@ -78,9 +78,10 @@ pub fn plan_iifds(request: &Request<'_>) -> Result<Plan, PlanError> {
     let tries = if settings.retry { LADDER.len() + 1 } else { 1 };
     let budget = common.max_evaluations.unwrap_or(u64::MAX).min(tries as u64) as usize;
     let (mut held, mut path, mut interrupted) = (Held::default(), Vec::<Vec3>::new(), false);
+    let (mut coefficients, mut used) = (all, Vec::new());
     for attempt in 0..budget {
         if attempt > 0 {
-            let coefficients = Coefficients { rho: 1.0, sigma: 1.0, theta: LADDER[attempt - 1] };
+            coefficients = Coefficients { rho: 1.0, sigma: 1.0, theta: LADDER[attempt - 1] };
             field.bodies_mut().iter_mut().for_each(|body| body.set(coefficients));
             steps.lambda = 1.0;
         }
@@ -89,6 +90,8 @@ pub fn plan_iifds(request: &Request<'_>) -> Result<Plan, PlanError> {
         held.count(1);
         if attempt == 0 || clear || cost.total < held.total() {
             held.hold(&path, cost, clear);
+            let Coefficients { rho, sigma, theta } = coefficients;
+            used = vec![("rho", rho), ("sigma", sigma), ("theta", theta), ("lambda", steps.lambda)];
         }
         held.note();
         interrupted = ending == Ending::Interrupted || request.control.interrupted();
@@ -97,5 +100,7 @@ pub fn plan_iifds(request: &Request<'_>) -> Result<Plan, PlanError> {
         }
     }
     // At least one line was drawn.
-    held.finish(request.planner, interrupted).ok_or_else(|| PlanError::parameter("max_evaluations", 0, "at least 1"))
+    let plan = held.finish(request.planner, interrupted);
+    plan.map(|plan| Plan { coefficients: used, ..plan })
+        .ok_or_else(|| PlanError::parameter("max_evaluations", 0, "at least 1"))
 }

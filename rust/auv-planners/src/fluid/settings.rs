@@ -74,6 +74,10 @@ pub struct Flow {
     pub escape: Option<bool>,
     /// Whether the guard is on.
     pub guard: Option<bool>,
+    /// The guard lets nothing come nearer than this Gamma.
+    pub guard_gamma: Option<f64>,
+    /// The goal is reached this near (m), and within a step in any case.
+    pub capture_m: f64,
     /// Exponent of the union of overlapping obstacles; 0: none.
     pub union_exponent: f64,
     /// How far a step goes.
@@ -99,6 +103,8 @@ impl Flow {
         within("margin_m", self.margin_m, 0.0, 1e9)?;
         within("unit_m", self.unit_m.unwrap_or(0.0), 0.0, 1e9)?;
         within("least_factor", self.least_factor.unwrap_or(0.0), 0.0, 10.0)?;
+        within("guard_gamma", self.guard_gamma.unwrap_or(1.0), 1.0, 1.015)?;
+        within("capture_m", self.capture_m, 0.0, 1e9)?;
         within("union_exponent", self.union_exponent, 0.0, 100.0)?;
         within("length_factor", self.length_factor.unwrap_or(1.0), 1.0, 1e3)
     }
@@ -135,6 +141,8 @@ impl Flow {
             lambda,
             advance: self.advance.unwrap_or(Advance::Unit),
             guard: self.guard.unwrap_or(self.recommended()),
+            guard_gamma: self.guard_gamma.unwrap_or(1.01),
+            capture_m: self.capture_m,
             length_factor: self.length_factor.unwrap_or(4.0),
         }
     }

@@ -34,6 +34,10 @@ pub struct Steps {
     pub advance: Advance,
     /// Whether the guard is on.
     pub guard: bool,
+    /// The guard lets nothing come nearer than this Gamma.
+    pub guard_gamma: f64,
+    /// The goal is reached this near (m), and within a step in any case.
+    pub capture_m: f64,
     /// A line that is this many times as long as the straight one is lost.
     pub length_factor: f64,
 }
@@ -49,10 +53,8 @@ pub enum Ending {
     Interrupted,
 }
 
-/// The guard lets nothing come nearer than this Gamma, ...
-const NEAREST: f64 = 1.01;
-/// ... but puts it out to this one.
-const PUT_OUT: f64 = 1.012;
+/// The guard puts points out this much farther, in Gamma, than it lets them come.
+const BEYOND: f64 = 0.002;
 /// The guard's steps are at most this part of the clearance.
 const CAREFUL: f64 = 0.3;
 /// On an obstacle the guard's steps are no longer than this part of its shortest semi-axis.
@@ -142,7 +144,7 @@ pub fn trace(
         let left = distance(here, goal);
         let free = if steps.guard { field.clearance(here, steps.step_m / CAREFUL) } else { f64::INFINITY };
         let step = steps.step_m.min(shortest.max(CAREFUL * free));
-        if left <= step {
+        if left <= step.max(steps.capture_m) {
             break Ending::Reached;
         }
         if travelled > longest || path.len() > MOST_STEPS {
@@ -163,7 +165,7 @@ pub fn trace(
         };
         let mut next = walls.clamp(add_scaled(here, far / speed, velocity));
         if steps.guard {
-            next = put_out(field, &walls, next, steps.step_m);
+            next = put_out(field, &walls, next, steps.guard_gamma, steps.step_m);
         }
         travelled += distance(here, next);
         // Points that do not move count, too, so that the loop ends.
@@ -179,11 +181,11 @@ pub fn trace(
 }
 
 /// The point, out of whatever it lies in or touches; a way out longer than `most` is left to the flow.
-pub(super) fn put_out(field: &Field, walls: &Walls, point: Vec3, most: f64) -> Vec3 {
+pub(super) fn put_out(field: &Field, walls: &Walls, point: Vec3, gamma: f64, most: f64) -> Vec3 {
     let mut place = point;
     for _ in 0..PUSHES {
-        let Some(body) = field.deepest(place, NEAREST) else { return place };
-        place = walls.clamp(body.shape.outside(place, PUT_OUT));
+        let Some(body) = field.deepest(place, gamma) else { return place };
+        place = walls.clamp(body.shape.outside(place, gamma + BEYOND));
     }
     if distance(point, place) <= most { place } else { point }
 }

@@ -99,6 +99,7 @@ fn plan(request: &Request<'_>, method: Method) -> Result<Plan, PlanError> {
         cost,
         evaluations,
         history: vec![(evaluations, cost.total)],
+        coefficients: Vec::new(),
         interrupted: found.is_none(),
         harbor: None,
     })

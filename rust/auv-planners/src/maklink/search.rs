@@ -241,6 +241,7 @@ impl<'a> Search<'a> {
             cost,
             evaluations: 0,
             history: Vec::new(),
+            coefficients: Vec::new(),
             interrupted,
             harbor: None,
         });

@@ -183,6 +183,7 @@ impl<'a> Query<'a> {
             cost,
             evaluations: self.evaluations,
             history: self.history,
+            coefficients: Vec::new(),
             interrupted: self.interrupted,
             harbor: None,
         }

@@ -203,9 +203,19 @@ impl<'a> Draw<'a> {
             let velocity = self.velocity(speed);
             obstacles.push(if flat {
                 let [x, y, _] = centre;
-                Obstacle::Disc(Disc { position_m: [x, y], radius_m: radius, velocity_mps: [velocity[0], velocity[1]] })
+                Obstacle::Disc(Disc {
+                    position_m: [x, y],
+                    radius_m: radius,
+                    velocity_mps: [velocity[0], velocity[1]],
+                    manoeuvre: None,
+                })
             } else {
-                Obstacle::Sphere(Sphere { position_m: centre, radius_m: radius, velocity_mps: velocity })
+                Obstacle::Sphere(Sphere {
+                    position_m: centre,
+                    radius_m: radius,
+                    velocity_mps: velocity,
+                    manoeuvre: None,
+                })
             });
         }
         Ok(obstacles)

@@ -1,11 +1,13 @@
 //! `iifds`: threats that cross the vehicle's way, after Yao & Zhao (2018): a box of 10 x 10 x 4 km, a way
 //! from corner to corner, spheres on courses that meet it, and a meandering jet.
 
-use super::{Difficulty, Parameters, few, not_negative};
+use super::{Difficulty, Manoeuvres, Parameters, few, not_negative};
 use crate::error::WorldError;
-use crate::math::{Vec3, add_scaled, distance};
+use crate::math::{Vec3, add_scaled, distance, sub};
 use crate::rng::{Purpose, Stream};
-use crate::scenario::{Current, Domain, Episode, Jet, Limits, Mission, Obstacle, SCHEMA, Scenario, Sphere, Vehicle};
+use crate::scenario::{
+    Current, Domain, Episode, Jet, Limits, Manoeuvre, Mission, Obstacle, SCHEMA, Scenario, Sphere, Vehicle,
+};
 
 const KM: f64 = 1000.0;
 const SIDE: f64 = 10.0 * KM;
@@ -18,6 +20,8 @@ const MARGIN: f64 = 0.9 * KM;
 const BESIDE: f64 = 0.7 * KM;
 /// Noise of seen threats (m): that of the set whose success rates are known with noise.
 const NOISE: f64 = 20.0;
+/// Looks along a threat's course at whether it keeps to the box.
+const LOOKS: u32 = 32;
 /// Tries before the box counts as full.
 const TRIES: usize = 1000;
 
@@ -56,8 +60,12 @@ pub(super) fn draw(seed: u64, parameters: &Parameters) -> Result<Scenario, World
     let time_factor = not_negative("time_factor", parameters.time_factor, time_factor)?;
     let mission = Mission { start_m: [0.0, 0.0, LEVEL], goal_m: [SIDE, SIDE, LEVEL] };
     let mut stream = Stream::new(seed, Purpose::Family, 4);
+    // In a stream of their own, so that they shift no other draw.
+    let mut turns = Stream::new(seed, Purpose::Family, 6);
+    let manoeuvres = parameters.manoeuvres.unwrap_or_default();
     let count = parameters.obstacles.unwrap_or(3);
-    let threats = (0..count).map(|_| threat(&mut stream, &mission, speed, fastest));
+    let threats =
+        (0..count).map(|_| threat(&mut stream, &mission, speed, fastest, || manoeuvre(&mut turns, manoeuvres)));
     let obstacles = threats.collect::<Option<Vec<_>>>();
     let obstacles = obstacles.ok_or_else(|| {
         WorldError::parameter("obstacle_speed_mps", fastest, "leaves no room for courses that begin in the box")
@@ -100,7 +108,13 @@ fn legs(sensor_noise_m: f64) -> Episode {
 }
 
 /// A sphere whose course meets a vehicle that goes straight, or nearly so; `None` if there is no room.
-fn threat(stream: &mut Stream, mission: &Mission, speed: f64, fastest: f64) -> Option<Obstacle> {
+fn threat(
+    stream: &mut Stream,
+    mission: &Mission,
+    speed: f64,
+    fastest: f64,
+    mut manoeuvre: impl FnMut() -> Option<Manoeuvre>,
+) -> Option<Obstacle> {
     let (start, goal) = (mission.start_m, mission.goal_m);
     let length = distance(start, goal);
     let along: Vec3 = std::array::from_fn(|axis| (goal[axis] - start[axis]) / length);
@@ -115,11 +129,43 @@ fn threat(stream: &mut Stream, mission: &Mission, speed: f64, fastest: f64) -> O
         let meeting = [meeting[0], meeting[1], meeting[2] + below];
         let velocity_mps = [pace * libm::cos(heading), pace * libm::sin(heading), 0.0];
         let time = if speed > 0.0 { way / speed } else { 0.0 };
-        let position_m = add_scaled(meeting, -time, velocity_mps);
-        let inside = (0..2).all(|axis| (0.0..=SIDE).contains(&position_m[axis]));
+        let manoeuvre = manoeuvre();
+        let (position_m, inside) = match &manoeuvre {
+            None => {
+                let begin = add_scaled(meeting, -time, velocity_mps);
+                (begin, is_inside(begin))
+            }
+            // It must not meet a wall before the vehicle.
+            Some(manoeuvre) => {
+                let begin = sub(meeting, manoeuvre.travel(velocity_mps, time));
+                let place = |part: f64| add_scaled(begin, 1.0, manoeuvre.travel(velocity_mps, part * time));
+                (begin, (0..=LOOKS).all(|look| is_inside(place(f64::from(look) / f64::from(LOOKS)))))
+            }
+        };
         let clear = |end: Vec3| distance(end, position_m) >= radius_m + MARGIN;
         let fits = inside && clear(start) && clear(goal);
-        fits.then_some(Obstacle::Sphere(Sphere { position_m, radius_m, velocity_mps }))
+        fits.then_some(Obstacle::Sphere(Sphere { position_m, radius_m, velocity_mps, manoeuvre }))
+    })
+}
+
+fn is_inside(place: Vec3) -> bool {
+    (0..2).all(|axis| (0.0..=SIDE).contains(&place[axis]))
+}
+
+/// A circle of half an hour to three hours, or a zigzag of 20 to 60 degrees with a turn every 5 to 15 minutes.
+fn manoeuvre(stream: &mut Stream, manoeuvres: Manoeuvres) -> Option<Manoeuvre> {
+    let turns = match manoeuvres {
+        Manoeuvres::None => return None,
+        Manoeuvres::Turn => true,
+        Manoeuvres::Zigzag => false,
+        Manoeuvres::Mixed => stream.below(2) == 0,
+    };
+    let side = if stream.below(2) == 0 { -1.0 } else { 1.0 };
+    Some(if turns {
+        Manoeuvre::Turn { rate_radps: side * std::f64::consts::TAU / stream.uniform(1800.0, 10_800.0) }
+    } else {
+        let angle_rad = side * stream.uniform(20.0, 60.0_f64).to_radians();
+        Manoeuvre::Zigzag { angle_rad, period_s: stream.uniform(600.0, 1800.0) }
     })
 }
 
@@ -149,8 +195,8 @@ mod tests {
 
     #[test]
     fn threats_meet_the_straight_way() {
-        for seed in 0..50 {
-            let parameters = Parameters { obstacles: Some(1), ..Parameters::default() };
+        for (seed, manoeuvres) in (0..50).flat_map(|seed| [Manoeuvres::None, Manoeuvres::Mixed].map(|m| (seed, m))) {
+            let parameters = Parameters { obstacles: Some(1), manoeuvres: Some(manoeuvres), ..Parameters::default() };
             let mut world = World::new(generate("iifds", seed, &parameters).unwrap(), seed, 0).unwrap();
             let (start, goal) = (world.mission().start_m, world.mission().goal_m);
             let length = distance(start, goal);
@@ -162,6 +208,40 @@ mod tests {
             // Aimed 700 m beside and 350 m above at most, and 500 m in radius at least.
             assert!(nearest.fold(f64::INFINITY, f64::min) < 300.0, "{seed}");
         }
+    }
+
+    #[test]
+    fn manoeuvres_shift_no_other_draw_and_keep_to_box_and_speed() {
+        let given = |manoeuvres| Parameters { manoeuvres: Some(manoeuvres), ..Parameters::default() };
+        assert_eq!(
+            generate("iifds", 4, &given(Manoeuvres::None)).unwrap(),
+            generate("iifds", 4, &Parameters::default()).unwrap()
+        );
+        let kinds = [Manoeuvres::Turn, Manoeuvres::Zigzag, Manoeuvres::Mixed];
+        let mut seen = [0; 2];
+        for (seed, kind) in (0..20).zip(kinds.into_iter().cycle()) {
+            let scenario = generate("iifds", seed, &given(kind)).unwrap();
+            scenario.check().unwrap();
+            for obstacle in &scenario.obstacles {
+                seen[usize::from(matches!(obstacle.manoeuvre(), Some(Manoeuvre::Turn { .. })))] += 1;
+            }
+            let mut world = World::new(scenario, seed, 0).unwrap();
+            let before: Vec<Vec3> = (0..3).map(|i| world.obstacle_position(i)).collect();
+            let mut last = before.clone();
+            for tick in 1..3000 {
+                world.set_time(6.0 * f64::from(tick));
+                for (i, last) in last.iter_mut().enumerate() {
+                    let place = world.obstacle_position(i);
+                    assert!(is_inside(place) && distance(place, *last) <= 6.0 * 1.8 + 1e-9);
+                    *last = place;
+                }
+            }
+            world.set_time(0.0);
+            assert!((0..3).all(|i| world.obstacle_position(i) == before[i]));
+        }
+        assert!(seen[0] > 10 && seen[1] > 10);
+        let peaks = generate("lfhh-3d", 1, &given(Manoeuvres::Turn)).unwrap_err().to_string();
+        assert!(peaks.starts_with("manoeuvres"));
     }
 
     #[test]

@@ -48,6 +48,21 @@ pub enum Variant {
     Paper,
 }
 
+/// How threats manoeuvre.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Manoeuvres {
+    /// Not at all.
+    #[default]
+    None,
+    /// Each goes round in a circle of its own.
+    Turn,
+    /// Each zigzags about its course.
+    Zigzag,
+    /// Each does one of these.
+    Mixed,
+}
+
 /// Parameters of the families; what is left out follows from family, difficulty and variant. Not every
 /// family knows them all.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -80,6 +95,8 @@ pub struct Parameters {
     pub obstacle_speed_mps: Option<f64>,
     /// Speed of every vortex centre between changes (m/s), 0.
     pub vortex_drift_mps: Option<f64>,
+    /// How threats manoeuvre (iifds only), not at all.
+    pub manoeuvres: Option<Manoeuvres>,
     /// Noise of seen obstacles (m), 0 (iifds 20).
     pub sensor_noise_m: Option<f64>,
     /// Number of vessels under way, 0 (harbor only).
@@ -91,6 +108,9 @@ pub struct Parameters {
 /// # Errors
 /// [`WorldError`] for an unknown family or a parameter that is not allowed, by name.
 pub fn generate(family: &str, seed: u64, parameters: &Parameters) -> Result<Scenario, WorldError> {
+    if parameters.manoeuvres.is_some() && family != "iifds" {
+        return Err(WorldError::parameter("manoeuvres", "given", "only the threats of the family iifds manoeuvre"));
+    }
     match family {
         "iifds" => return iifds::draw(seed, parameters),
         "harbor" => return harbor::draw(seed, parameters),

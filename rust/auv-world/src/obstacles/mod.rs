@@ -10,7 +10,7 @@ mod superquadric;
 pub use round::{Beams, Discs, Spheres};
 
 use crate::math::{Vec3, add_scaled};
-use crate::scenario::{Cylinder, Obstacle, Superquadric};
+use crate::scenario::{Cylinder, Manoeuvre, Obstacle, Superquadric};
 
 /// A shape that is neither sphere nor disc, at its present place.
 #[derive(Debug, Clone)]
@@ -105,6 +105,15 @@ impl Obstacle {
             Self::Cylinder(shape) => flat(shape.velocity_mps),
             Self::Superquadric(shape) => shape.velocity_mps,
             Self::Polygon(shape) => flat(shape.velocity_mps),
+        }
+    }
+
+    /// How it departs from that velocity, if it does.
+    pub fn manoeuvre(&self) -> Option<&Manoeuvre> {
+        match self {
+            Self::Sphere(shape) => shape.manoeuvre.as_ref(),
+            Self::Disc(shape) => shape.manoeuvre.as_ref(),
+            Self::Cylinder(_) | Self::Superquadric(_) | Self::Polygon(_) => None,
         }
     }
 

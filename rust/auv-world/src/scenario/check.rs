@@ -1,32 +1,33 @@
 //! What a scenario may say. Every refusal names the key, the value and what is allowed.
 
+use super::manoeuvre::{check_manoeuvre, check_on_the_map};
 use super::{Change, Current, GriddedCurrent, GriddedSeabed, Hold, Obstacle, SCHEMA, Scenario, Seabed, SectionFrame};
 use crate::error::WorldError;
 use crate::math::{Vec2, Vec3};
 use crate::obstacles::polygon;
 use crate::world::World;
 
-type Checked = Result<(), WorldError>;
+pub(super) type Checked = Result<(), WorldError>;
 
 /// More obstacles, vortices, peaks, sections or phases than this are refused.
-const MOST: usize = 100_000;
+pub(super) const MOST: usize = 100_000;
 /// More sections than this are refused.
 const MOST_SECTIONS: usize = 10_000;
 /// Larger numbers than this are refused, so that no square overflows.
 const LARGEST: f64 = 1e12;
 
-fn finite(key: &str, value: f64) -> Checked {
+pub(super) fn finite(key: &str, value: f64) -> Checked {
     if value.is_finite() && value.abs() <= LARGEST {
         return Ok(());
     }
     Err(WorldError::key(key, value, format!("must be a finite number of at most {LARGEST:e}")))
 }
 
-fn all_finite(key: &str, values: &[f64]) -> Checked {
+pub(super) fn all_finite(key: &str, values: &[f64]) -> Checked {
     values.iter().try_for_each(|&value| finite(key, value))
 }
 
-fn positive(key: &str, value: f64) -> Checked {
+pub(super) fn positive(key: &str, value: f64) -> Checked {
     finite(key, value)?;
     if value > 0.0 { Ok(()) } else { Err(WorldError::key(key, value, "must be greater than 0")) }
 }
@@ -36,7 +37,7 @@ fn not_negative(key: &str, value: f64) -> Checked {
     if value >= 0.0 { Ok(()) } else { Err(WorldError::key(key, value, "must not be negative")) }
 }
 
-fn at_most(key: &str, count: usize, most: usize) -> Checked {
+pub(super) fn at_most(key: &str, count: usize, most: usize) -> Checked {
     if count <= most { Ok(()) } else { Err(WorldError::key(key, count, format!("at most {most} are allowed"))) }
 }
 
@@ -383,11 +384,15 @@ fn check_obstacle(key: &str, obstacle: &Obstacle) -> Checked {
         Obstacle::Sphere(sphere) => {
             all_finite(&name("position_m"), &sphere.position_m)?;
             all_finite(&name("velocity_mps"), &sphere.velocity_mps)?;
+            check_manoeuvre(&name("manoeuvre"), sphere.manoeuvre.as_ref(), sphere.velocity_mps)?;
             positive(&name("radius_m"), sphere.radius_m)
         }
         Obstacle::Disc(disc) => {
             all_finite(&name("position_m"), &disc.position_m)?;
             all_finite(&name("velocity_mps"), &disc.velocity_mps)?;
+            let [u, v] = disc.velocity_mps;
+            check_manoeuvre(&name("manoeuvre"), disc.manoeuvre.as_ref(), [u, v, 0.0])?;
+            check_on_the_map(&name("manoeuvre.legs"), disc.manoeuvre.as_ref())?;
             positive(&name("radius_m"), disc.radius_m)
         }
         Obstacle::Cylinder(cylinder) => {

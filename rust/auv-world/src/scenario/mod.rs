@@ -4,10 +4,11 @@
 mod check;
 mod data;
 mod file;
+mod manoeuvre;
 mod obstacle;
 
 pub use data::Data;
-pub use obstacle::{Cylinder, Disc, Obstacle, Polygon, Sphere, Superquadric};
+pub use obstacle::{Cylinder, Disc, Leg, Manoeuvre, Obstacle, Polygon, Sphere, Superquadric};
 use serde::{Deserialize, Serialize};
 
 use crate::math::{Vec2, Vec3};

@@ -31,6 +31,9 @@ pub struct Sphere {
     /// Velocity (m/s); the centre reflects at the walls.
     #[serde(default)]
     pub velocity_mps: Vec3,
+    /// How it departs from that velocity; without it, never.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub manoeuvre: Option<Manoeuvre>,
 }
 
 /// A disc on the map, solid at all depths.
@@ -44,6 +47,9 @@ pub struct Disc {
     /// Velocity (m/s); the centre reflects at the walls.
     #[serde(default)]
     pub velocity_mps: Vec2,
+    /// How it departs from that velocity; without it, never.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub manoeuvre: Option<Manoeuvre>,
 }
 
 /// A vertical cylinder.
@@ -91,4 +97,37 @@ pub struct Polygon {
     /// Velocity (m/s); the mean of the corners reflects at the walls.
     #[serde(default)]
     pub velocity_mps: Vec2,
+}
+
+/// How an obstacle changes course. Its centre reflects at the walls as ever.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
+pub enum Manoeuvre {
+    /// Round and round on the map at an even speed.
+    Turn {
+        /// Rate of the course (rad/s), positive from x towards y; not 0.
+        rate_radps: f64,
+    },
+    /// To one side of its course and to the other, at an even speed.
+    Zigzag {
+        /// How far the course is off (rad), first from x towards y if positive.
+        angle_rad: f64,
+        /// From one turn to the next but one (s). The first comes after a quarter of it.
+        period_s: f64,
+    },
+    /// New velocities at given times.
+    Legs {
+        /// In order of time.
+        legs: Vec<Leg>,
+    },
+}
+
+/// A velocity from some time on.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Leg {
+    /// From then on (s after the start).
+    pub from_s: f64,
+    /// Velocity (m/s). That of a disc is one on the map: its last entry is 0.
+    pub velocity_mps: Vec3,
 }

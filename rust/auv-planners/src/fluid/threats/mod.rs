@@ -7,5 +7,5 @@ mod settings;
 
 pub use barrier::{Ball, turned_away};
 pub use kalman::{Kalman, Noise};
-pub use navigator::{Course, Navigator, Rules, Side};
+pub use navigator::{Course, Navigator, Prediction, Rules, Side};
 pub use settings::{RuleSet, Settings};

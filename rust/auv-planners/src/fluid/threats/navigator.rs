@@ -35,6 +35,27 @@ pub enum Side {
     Fixed,
 }
 
+/// Where the flow meets a threat.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Prediction {
+    /// Where it will be at the end of the horizon.
+    #[default]
+    Last,
+    /// Where it will be at each fifth of the horizon, at once.
+    All,
+}
+
+impl Prediction {
+    /// Places at which it meets one.
+    fn places(self) -> usize {
+        match self {
+            Self::Last => 1,
+            Self::All => 5,
+        }
+    }
+}
+
 /// How threats are avoided.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rules {
@@ -48,8 +69,12 @@ pub struct Rules {
     pub side: Side,
     /// The flow takes threats to be this much larger than they are (m).
     pub margin_m: f64,
+    /// A threat's side, once chosen, changes only when the angle of eq. 32 is so far beyond a right one (rad).
+    pub latch_rad: f64,
     /// The flow takes threats to be where they will be then (s).
     pub horizon_s: f64,
+    /// Where until then.
+    pub prediction: Prediction,
     /// Whether the flow passes over threats that go away by themselves.
     pub ignore_receding: bool,
     /// alpha: the gap to a threat may shrink by this part of it in a second (1/s); 0: no barrier.
@@ -70,7 +95,9 @@ impl Default for Rules {
             share: 0.3,
             side: Side::Reverse,
             margin_m: 300.0,
+            latch_rad: 0.0,
             horizon_s: 30.0,
+            prediction: Prediction::Last,
             ignore_receding: true,
             barrier_per_s: 0.002,
             relative: false,
@@ -102,6 +129,8 @@ struct Tracker {
     filter: Kalman,
     /// When the threat was seen last (s).
     seen_s: f64,
+    /// Whether it was last found to go to the right of the vehicle's way; unknown while it is not known to move.
+    rightwards: Option<bool>,
 }
 
 /// A vehicle's way to a goal among things that move.
@@ -109,8 +138,9 @@ struct Tracker {
 pub struct Navigator {
     world: World,
     field: Field,
-    /// Bodies before this one are at rest; the others are the threats.
+    /// Bodies before this one are at rest; the others are the threats, each as often as `prediction` has it.
     still: usize,
+    latch: f64,
     trackers: Vec<Option<Tracker>>,
     radii: Vec<f64>,
     balls: Vec<Ball>,
@@ -127,7 +157,7 @@ impl Navigator {
         let mut all: Vec<Body> = bodies(world, flow.margin_m, |_| rules.still);
         all.retain(|body| body.velocity == [0.0; 3]);
         let still = all.len();
-        all.extend(radii.iter().map(|radius| threat(*radius, &rules)));
+        all.extend(radii.iter().flat_map(|radius| threat(*radius, &rules)));
         let mut modulation = flow.modulation(start, goal);
         modulation.relative = rules.relative;
         // Threats wander: what overlaps now will not stay.
@@ -136,6 +166,7 @@ impl Navigator {
             world: world.clone(),
             field: Field::new(all, modulation, world.scenario().dimensions == 2),
             still,
+            latch: libm::sin(rules.latch_rad),
             trackers: vec![None; radii.len()],
             radii: radii.to_vec(),
             balls: Vec::with_capacity(radii.len()),
@@ -155,7 +186,7 @@ impl Navigator {
             }
             nothing => {
                 let filter = Kalman::new(self.rules.noise, position, time_s);
-                *nothing = Some(Tracker { filter, seen_s: time_s });
+                *nothing = Some(Tracker { filter, seen_s: time_s, rightwards: None });
             }
         }
     }
@@ -179,7 +210,7 @@ impl Navigator {
             }
         }
         let threat = best.1.or(free).unwrap_or_else(|| {
-            self.field.push(threat(radius, &self.rules));
+            threat(radius, &self.rules).for_each(|body| self.field.push(body));
             self.trackers.push(None);
             self.radii.push(radius);
             self.radii.len() - 1
@@ -189,10 +220,12 @@ impl Navigator {
 
     /// Forgets the threats that were seen last before a time (s).
     pub fn forget(&mut self, before_s: f64) {
-        let threats = &mut self.field.bodies_mut()[self.still..];
-        for (tracker, body) in self.trackers.iter_mut().zip(threats) {
+        let places = self.rules.prediction.places();
+        let threats = self.field.bodies_mut()[self.still..].chunks_exact_mut(places);
+        for (tracker, bodies) in self.trackers.iter_mut().zip(threats) {
             if tracker.is_some_and(|tracker| tracker.seen_s < before_s) {
-                (*tracker, body.active) = (None, false);
+                *tracker = None;
+                bodies.iter_mut().for_each(|body| body.active = false);
             }
         }
     }
@@ -224,7 +257,7 @@ impl Navigator {
         let mut waypoint = self.walls.clamp(add_scaled(here, far, direction));
         if self.steps.guard {
             self.field.bodies_mut()[self.still..].iter_mut().for_each(|threat| threat.active = false);
-            waypoint = put_out(&self.field, &self.walls, waypoint, far);
+            waypoint = put_out(&self.field, &self.walls, waypoint, self.steps.guard_gamma, far);
         }
         let velocity = unit(sub(waypoint, here)).unwrap_or([0.0; 3]).map(|d| speed * d);
         let waypoint = add_scaled(here, far / speed, velocity);
@@ -238,18 +271,27 @@ impl Navigator {
         self.balls.clear();
         let heading = unit(flow).unwrap_or([0.0; 3]);
         let [ahead, aside, _] = sub(self.goal, here);
-        for ((body, tracker), radius) in
-            self.field.bodies_mut()[self.still..].iter_mut().zip(&self.trackers).zip(&self.radii)
-        {
-            let Some(Tracker { filter, .. }) = tracker else { continue };
+        let places = self.rules.prediction.places();
+        let threats = self.field.bodies_mut()[self.still..].chunks_exact_mut(places);
+        for ((bodies, tracker), radius) in threats.zip(&mut self.trackers).zip(&self.radii) {
+            let Some(Tracker { filter, rightwards: known, .. }) = tracker else { continue };
             let ball = filter.ball(*radius, time_s);
             let Ball { centre, velocity, .. } = ball;
             self.balls.push(ball);
             let closing = sub(heading.map(|h| self.steps.speed_mps * h), velocity);
             let recedes = dot(sub(here, centre), closing) > 0.0;
-            body.active = !(self.rules.ignore_receding && recedes);
-            // v of eq. 31 points to the right of the goal's direction.
-            let rightwards = velocity[0] * aside - velocity[1] * ahead > 0.0;
+            // v of eq. 31 points to the right of the goal's direction; this is u.v times that one's length.
+            let across = velocity[0] * aside - velocity[1] * ahead;
+            let rightwards = match *known {
+                Some(before) if self.latch > 0.0 => {
+                    let most = norm([velocity[0], velocity[1], 0.0]) * norm([ahead, aside, 0.0]);
+                    if across.abs() > self.latch * most { across > 0.0 } else { before }
+                }
+                _ => across > 0.0,
+            };
+            if across != 0.0 {
+                *known = Some(rightwards);
+            }
             let left = match self.rules.side {
                 Side::Reverse => rightwards,
                 Side::Same => !rightwards,
@@ -257,21 +299,25 @@ impl Navigator {
             };
             let theta = self.rules.share * FRAC_PI_2;
             let theta = if left { PI - theta } else { theta };
-            body.velocity = velocity;
-            body.set(Coefficients { rho: self.rules.rho, sigma: self.rules.sigma, theta });
-            if let Shape::Superquadric(sphere) = &mut body.shape {
-                sphere.place(filter.position(time_s + self.rules.horizon_s));
+            for (place, body) in bodies.iter_mut().enumerate() {
+                body.active = !(self.rules.ignore_receding && recedes);
+                body.velocity = velocity;
+                body.set(Coefficients { rho: self.rules.rho, sigma: self.rules.sigma, theta });
+                if let Shape::Superquadric(sphere) = &mut body.shape {
+                    let ahead_s = self.rules.horizon_s * (place + 1) as f64 / places as f64;
+                    sphere.place(filter.position(time_s + ahead_s));
+                }
             }
         }
     }
 }
 
-/// A threat of a radius (m), wherever it is.
-fn threat(radius: f64, rules: &Rules) -> Body {
+/// A threat of a radius (m), wherever it is, as often as the flow meets it.
+fn threat(radius: f64, rules: &Rules) -> impl Iterator<Item = Body> {
     let sphere = Superquadric::new([0.0; 3], [radius + rules.margin_m; 3], [2.0; 3]);
     let mut threat = Body::new(Shape::Superquadric(sphere), rules.still);
     threat.active = false;
-    threat
+    std::iter::repeat_n(threat, rules.prediction.places())
 }
 
 fn unit(vector: Vec3) -> Option<Vec3> {

@@ -5,7 +5,7 @@ use auv_world::math::Vec3;
 use serde::Deserialize;
 
 use super::kalman::Noise;
-use super::navigator::{Navigator, Rules, Side};
+use super::navigator::{Navigator, Prediction, Rules, Side};
 use crate::error::{PlanError, within};
 use crate::fluid::field::Coefficients;
 use crate::fluid::settings::{Flow, Options, check_coefficients};
@@ -44,14 +44,22 @@ pub struct Settings {
     pub virtual_speed_mps: f64,
     /// The flow takes threats to be this much larger than they are (m).
     pub margin_m: Option<f64>,
+    /// A threat's side, once chosen, changes only when the angle of eq. 32 is so far beyond a right one (rad).
+    pub latch_rad: f64,
     /// The flow takes threats to be where they will be then (s).
     pub horizon_s: f64,
+    /// Whether it meets them there or all the way there.
+    pub prediction: Prediction,
     /// alpha: the gap to a threat may shrink by this part of it in a second (1/s); 0: no barrier.
     pub barrier_per_s: Option<f64>,
     /// Whether the flow passes over threats that go away by themselves.
     pub ignore_receding: Option<bool>,
+    /// Whether threats turn the flow in their own frame instead.
+    pub relative: bool,
     /// Standard deviation of measurements along each axis (m).
     pub noise_m: f64,
+    /// Strength of the noise in a threat's acceleration (m^2/s^3): how much it may manoeuvre.
+    pub process_m2ps3: f64,
 }
 
 impl Default for Settings {
@@ -67,10 +75,14 @@ impl Default for Settings {
             lambda: 1.0,
             virtual_speed_mps: 0.0,
             margin_m: None,
+            latch_rad: rules.latch_rad,
             horizon_s: rules.horizon_s,
+            prediction: rules.prediction,
             barrier_per_s: None,
             ignore_receding: None,
+            relative: rules.relative,
             noise_m: rules.noise.measurement_m,
+            process_m2ps3: rules.noise.process,
         }
     }
 }
@@ -86,9 +98,11 @@ impl Settings {
         within("lambda", self.lambda, 0.0, 1.0)?;
         within("virtual_speed_mps", self.virtual_speed_mps, 0.0, 1e6)?;
         within("margin_m", self.margin_m.unwrap_or(0.0), 0.0, 1e9)?;
+        within("latch_rad", self.latch_rad, 0.0, std::f64::consts::FRAC_PI_2)?;
         within("horizon_s", self.horizon_s, 0.0, 1e9)?;
         within("barrier_per_s", self.barrier_per_s.unwrap_or(0.0), 0.0, 1e3)?;
-        within("noise_m", self.noise_m, 0.0, 1e9)
+        within("noise_m", self.noise_m, 0.0, 1e9)?;
+        within("process_m2ps3", self.process_m2ps3, 0.0, 1e9)
     }
 
     fn still(&self) -> Coefficients {
@@ -113,10 +127,13 @@ impl Settings {
             share: self.share,
             side: self.side,
             margin_m: self.margin_m.unwrap_or(usual.margin_m),
+            latch_rad: self.latch_rad,
             horizon_s: self.horizon_s,
+            prediction: self.prediction,
+            relative: self.relative,
             ignore_receding: self.ignore_receding.unwrap_or(usual.ignore_receding),
             barrier_per_s: self.barrier_per_s.unwrap_or(usual.barrier_per_s),
-            noise: Noise { measurement_m: self.noise_m, ..usual.noise },
+            noise: Noise { measurement_m: self.noise_m, process: self.process_m2ps3, ..usual.noise },
             still: self.still(),
             ..usual
         };

@@ -19,6 +19,8 @@ use crate::sections::check_place;
 /// rho, theta, sigma, lambda: a chromosome.
 pub type Genes = [f64; 4];
 
+const GENES: [&str; 4] = ["rho", "theta", "sigma", "lambda"];
+
 /// Least and greatest value of each gene (eq. 19).
 pub type Bounds = [[f64; 2]; 4];
 
@@ -163,7 +165,8 @@ impl<'a> Tuner<'a> {
     /// [`PlanError`] if nothing was evaluated.
     pub fn finish(self, planner: &str) -> Result<Tuned, PlanError> {
         let nothing = || PlanError::parameter("max_evaluations", self.limit, "at least 1");
-        let plan = self.held.finish(planner, self.interrupted).ok_or_else(nothing)?;
+        let mut plan = self.held.finish(planner, self.interrupted).ok_or_else(nothing)?;
+        plan.coefficients = GENES.into_iter().zip(self.genes).collect();
         Ok(Tuned { plan, genes: self.genes, value: self.best })
     }
 }
