@@ -24,7 +24,7 @@ MEASURES = {
     "turn_deg": "Sharpest turn (degrees)",
     "reached": "Share that arrived",
     "evaluations": "Evaluations",
-    "step_us": "Time of a step (microseconds)",
+    "step_us": "Time of a step (microseconds, median)",
 }
 #: Paths are looked at this often, m.
 _SPACING_M = 10.0
