@@ -39,9 +39,11 @@ __version__: str
 
 _Point: TypeAlias = tuple[float, float, float]
 
-# (gap_m, depth_m, corners (n, 3), trace (m, 2)); these are only here, for type checkers: the engine
-# has no such names.
-FoundReport: TypeAlias = tuple[float | None, float, NDArray[np.float64], NDArray[np.float64]]
+# (gap_m, depth_m, corners (n, 3), trace (m, 2), barriers); these are only here, for type checkers:
+# the engine has no such names.
+FoundReport: TypeAlias = tuple[
+    float | None, float, NDArray[np.float64], NDArray[np.float64], list[int]
+]
 # (planner, waypoints (n, 3), feasible, cost, evaluations, history (m, 2), window, harbor,
 # coefficients).
 FoundPlan: TypeAlias = tuple[

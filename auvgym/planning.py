@@ -29,12 +29,14 @@ class HarborReport:
         corners: the path before smoothing, (n, 3) float64 m.
         trace: the least value so far of what the planner minimises against evaluations, (m, 2)
             float64: of swarms and ants the cost F, generation by generation, else the length, m.
+        barriers: where there is no way, the polygons whose zones part the goal from the start.
     """
 
     gap_m: float | None
     depth_m: float
     corners: Array = field(repr=False)
     trace: Array = field(repr=False)
+    barriers: list[int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -288,8 +290,8 @@ def _window(window: int) -> int:
 
 
 def _plan(found: _core.FoundPlan) -> Plan:
-    *parts, harbor, coefficients = found
-    return Plan(*parts, None if harbor is None else HarborReport(*harbor), coefficients)
+    report = None if found[7] is None else HarborReport(*found[7])
+    return Plan(*found[:7], report, found[8])
 
 
 def _check_planner(planner: str) -> None:

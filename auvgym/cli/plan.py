@@ -210,6 +210,8 @@ def _show_harbor(table: Any, report: auvgym.HarborReport) -> None:
     table.add_row(
         "danger zones", f"[red]entered, {depth:.2f} m deep[/]" if depth > 1e-6 else "kept out of"
     )
+    if report.barriers:
+        table.add_row("no way", f"[red]zones of polygons {report.barriers} part the goal[/]")
     if report.gap_m is not None:
         table.add_row("above the shortest", f"{report.gap_m:+.3f} m")
 

@@ -64,8 +64,8 @@ COLUMNS = (
     Column(
         "gap",
         lambda row: _scaled(row.gap, 1.0, 3),
-        "gap: what a planner's first plan costs above the section optimum, mean over those "
-        "that break no constraint",
+        "gap: what a planner's first plan costs above the exact optimum (in harbours m), mean over "
+        "those that break no constraint",
         dropped=5,
     ),
     Column("evals", lambda row: _count(row.evaluations)),

@@ -73,7 +73,9 @@ class PlannerPolicy(ScriptedPolicy):
     def reset(self, env: Any) -> None:
         """Plan from the start to the goal on the first map."""
         super().reset(env)
-        self._capture_m = float(self.env.world.scenario.to_dict()["episode"]["capture_radius_m"])
+        scenario = self.env.world.scenario.to_dict()
+        self._capture_m = float(scenario["episode"]["capture_radius_m"])
+        self._speed_mps = float(scenario["vehicle"]["speed_mps"])
         self._changes, self._next, self._planned_s = 0, 1, 0.0
         with self.planning():
             plan = auvgym.plan(self.env.world, self.planner, seed=self.seed, **self.parameters)
@@ -116,6 +118,17 @@ class PlannerPolicy(ScriptedPolicy):
         A leg ends a capture radius before the point it steers to. Aiming that much beyond the
         waypoint ends it on the path instead of cutting the corner, where the planner left no room.
         """
+        if self.replan_every_s is None:
+            return self._aim_at_waypoint()
+        # No leg may outlast the plan.
+        offset = self._aim_at_waypoint() - self.position
+        ahead_m = self._capture_m + self._speed_mps * self.replan_every_s
+        aim: Vector = self.position + offset * min(
+            1.0, ahead_m / max(float(np.linalg.norm(offset)), 1e-9)
+        )
+        return aim
+
+    def _aim_at_waypoint(self) -> Vector:
         waypoint: Vector = self._waypoints[self._next]
         if self._next == len(self._waypoints) - 1:
             return waypoint

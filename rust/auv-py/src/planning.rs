@@ -27,8 +27,8 @@ type FoundPlan<'py> = (
     Bound<'py, PyDict>,
 );
 
-/// (gap_m, depth_m, corners, trace).
-type HarborReport<'py> = (Option<f64>, f64, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);
+/// (gap_m, depth_m, corners, trace, barriers).
+type HarborReport<'py> = (Option<f64>, f64, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>, Vec<usize>);
 
 /// Runs planning without the GIL; Ctrl-C stops it within a fraction of a second.
 fn run<T: Send>(py: Python<'_>, work: impl FnOnce(&Control<'_>) -> Result<T, PlanError> + Send) -> PyResult<T> {
@@ -57,7 +57,7 @@ fn found(py: Python<'_>, plan: auv_planners::Plan, window: Option<usize>) -> PyR
     let harbor = match plan.harbor {
         Some(report) => {
             let corners = points::table(py, &report.corners)?;
-            Some((report.gap_m, report.depth_m, corners, progress(py, &report.trace)?))
+            Some((report.gap_m, report.depth_m, corners, progress(py, &report.trace)?, report.barriers))
         }
         None => None,
     };

@@ -15,4 +15,6 @@ pub struct HarborReport {
     /// The least value so far of what the planner minimises, after so many evaluations, generation by generation:
     /// of swarms the cost F, of others the length (m).
     pub trace: Vec<(u64, f64)>,
+    /// Where there is no way: the polygons whose zones part the goal from the start.
+    pub barriers: Vec<usize>,
 }

@@ -126,7 +126,7 @@ impl<'a> Search<'a> {
         let routes = Routes::new(&self.chart, start, goal).and_then(|routes| routes.shortest_few(count));
         match routes {
             Ok(routes) => Ok(Some(routes)),
-            Err(MapError::NoWay | MapError::InZone { .. }) => {
+            Err(MapError::NoWay { .. } | MapError::InZone { .. }) => {
                 self.no_way();
                 Ok(None)
             }
@@ -225,6 +225,11 @@ impl<'a> Search<'a> {
             depth_m: self.depth,
             corners: self.waypoints(&self.corners),
             trace: std::mem::take(&mut self.trace),
+            barriers: if self.noted.is_finite() || self.interrupted {
+                Vec::new()
+            } else {
+                self.chart.barriers(self.ends[0])
+            },
         };
         let ends = [self.request.start, self.request.goal];
         let cost = self.judge.cost(&ends);

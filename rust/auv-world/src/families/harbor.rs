@@ -166,7 +166,12 @@ fn vessel(stream: &mut Stream, mission: &Mission, fastest: f64) -> Obstacle {
             break place;
         }
     };
-    Obstacle::Disc(Disc { position_m, radius_m, velocity_mps: [pace * libm::cos(heading), pace * libm::sin(heading)], manoeuvre: None })
+    Obstacle::Disc(Disc {
+        position_m,
+        radius_m,
+        velocity_mps: [pace * libm::cos(heading), pace * libm::sin(heading)],
+        manoeuvre: None,
+    })
 }
 
 /// Whether something lies on the straight line from start to goal.
