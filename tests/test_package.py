@@ -26,7 +26,6 @@ HEAVY = [
     "torch",
     "polars",
     "onnxruntime",
-    "ray",
     "xarray",
     "pygame",
     "plotly",
