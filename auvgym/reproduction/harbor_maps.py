@@ -41,7 +41,9 @@ def draw_maps(figures: Any, card: Card, colours: tuple[str, ...]) -> Any:
     for axis in axes[len(card.cases) :]:
         axis.set_visible(False)
     handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
+    figure.legend(
+        handles, labels, loc="outside lower center", ncols=2 * abreast, fontsize=8, frameon=False
+    )
     figure.suptitle(f"{card.title}: seed 0", fontsize=11)
     return figure
 

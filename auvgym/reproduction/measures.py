@@ -29,7 +29,6 @@ MEASURES = {
     "iteration": "First iteration within 1 % of its own end",
     "evaluations_1": "Evaluations until within 1 % of the exact optimum; all if never",
     "fitness": "F, as the planner minimises it",
-    "time_s": "Travel time (s)",
     "time_loss_percent": "Travel time above the fastest (%)",
     "inside_m": "Way inside danger zones (m)",
     "clearance_m": "Least clearance to polygons (m); negative inside",
