@@ -39,7 +39,13 @@ _Point: TypeAlias = tuple[float, float, float]
 # (planner, waypoints (n, 3), feasible, cost, evaluations, history (m, 2), window, coefficients);
 # only here, for type checkers: the engine has no such name.
 FoundPlan: TypeAlias = tuple[
-    str, NDArray[np.float64], bool, dict[str, float], int, NDArray[np.float64], int | None,
+    str,
+    NDArray[np.float64],
+    bool,
+    dict[str, float],
+    int,
+    NDArray[np.float64],
+    int | None,
     dict[str, float],
 ]
 

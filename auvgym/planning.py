@@ -30,8 +30,8 @@ class Plan:
         evaluations: counted budget: fitness evaluations, or nodes settled by grid planners.
         history: best total cost against evaluations so far, (m, 2) float64.
         window: sections of the last planning window, where one was used.
-        coefficients: those of the flow that drew the path (``rho``, ``sigma``, ``theta``, ``lambda``),
-            chosen or tuned; empty for all but the planners ``iifds``.
+        coefficients: those of the flow that drew the path, chosen or tuned (``rho``, ``sigma``,
+            ``theta``, ``lambda``); empty for all but the planners ``iifds``.
     """
 
     planner: str
