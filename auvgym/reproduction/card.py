@@ -231,14 +231,14 @@ def load_card(name: str) -> Card:
     if card.view not in get_args(View):
         raise CardError(f"card {name}: {unknown('view', card.view, list(get_args(View)))}")
     for picture in card.pictures:
-        _check_picture(card, picture)
+        check_picture(card, picture)
     for measure in card.measures:
         if measure not in MEASURES:
             raise CardError(f"card {name}: {unknown('measure', measure, list(MEASURES))}")
     return card
 
 
-def _check_picture(card: Card, picture: Picture) -> None:
+def check_picture(card: Card, picture: Picture) -> None:
     """Raises CardError for a kind, column or case that does not exist."""
     columns = [column.label for column in card.columns]
     cases = [case.label for case in card.cases]

@@ -20,6 +20,8 @@ from auvgym.reproduction.summaries import SUMMARIES
 
 _ABREAST = 3
 _PIXELS_PER_INCH = 110
+#: Measures that differ by orders of magnitude.
+_LOGARITHMIC = ("step_us",)
 #: A path is feasible below this (LFHH and AFHH).
 _FEASIBLE = 2.0
 
@@ -111,6 +113,8 @@ def _measures(figures: Any, card: Card, rows: list[list[Cell]]) -> Any:
             known = [i for i, figure in enumerate(paper) if not isinstance(figure, str)]
             axis.plot(places[known], [paper[i] for i in known], "D", color="black", ms=4)
         axis.set_title(f"{MEASURES[measure]}; diamonds: paper", fontsize=9)
+        if measure in _LOGARITHMIC:
+            axis.set_yscale("log")
         labels = [row[0].case.label for row in rows]
         axis.set_xticks(range(len(rows)), labels, rotation=20, ha="right", fontsize=7)
         axis.tick_params(axis="y", labelsize=8)
