@@ -5,10 +5,10 @@ BIN := $(VENV)/bin
 WORKERS ?= 2
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test check format bench clean
+.PHONY: help setup demo leaderboard test check format bench clean
 
 help: ## list the verbs
-	@awk -F':.*## ' '/^[a-z-]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F':.*## ' '/^[a-z-]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 $(BIN)/uv:
 	$(PYTHON) -m venv $(VENV)
@@ -28,6 +28,11 @@ setup: $(VENV)/.dev ## build the engine and install everything that development 
 
 demo: $(VENV)/.demo ## run the small leaderboard: a ranked table and results/demo/leaderboard.html
 	$(BIN)/auvgym leaderboard --suite demo --fresh --workers $(WORKERS) --out results/demo
+
+BOARDS ?=
+
+leaderboard: $(VENV)/.dev ## fly the published boards (BOARDS=demo: that one) and write baselines/board
+	$(BIN)/python baselines/board/make_board.py $(BOARDS) --workers $(WORKERS)
 
 test: $(VENV)/.dev ## Rust and Python tests
 	cargo test --workspace --quiet

@@ -11,8 +11,8 @@ and gives worlds and planners without Gymnasium::
     plan = auvgym.plan(world, "lfhh", seed=0)
 
 Units are SI throughout: metres, seconds, radians, m/s, joules; positions are (x, y, z) with z the
-depth, positive down. ``auvgym.ocean``, ``auvgym.policies``, ``auvgym.evaluation`` and
-``auvgym.rendering`` are imported when they are first used.
+depth, positive down. ``auvgym.ocean``, ``auvgym.policies``, ``auvgym.evaluation``,
+``auvgym.rendering``, ``auvgym.vector`` and ``auvgym.sb3`` are imported when they are first used.
 """
 
 from __future__ import annotations
@@ -21,18 +21,30 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 from auvgym._core import ActionError, PlanningError, ScenarioError, __version__
-from auvgym.planning import Plan, gap, list_planners, path_cost, plan, replan, run_phases
+from auvgym.harbors import Maklink, maklink
+from auvgym.planning import (
+    HarborReport,
+    Plan,
+    gap,
+    list_planners,
+    path_cost,
+    plan,
+    replan,
+    run_phases,
+)
 from auvgym.registration import register_environments
 from auvgym.scenario import Scenario, list_families, list_scenarios
 from auvgym.section_problem import SectionProblem
 from auvgym.world import World
 
 if TYPE_CHECKING:
-    from auvgym import evaluation, ocean, policies, rendering, report
+    from auvgym import evaluation, ocean, policies, rendering, report, vector
     from auvgym.policies import list_policies
 
 __all__ = [
     "ActionError",
+    "HarborReport",
+    "Maklink",
     "Plan",
     "PlanningError",
     "Scenario",
@@ -46,6 +58,7 @@ __all__ = [
     "list_planners",
     "list_policies",
     "list_scenarios",
+    "maklink",
     "ocean",
     "path_cost",
     "plan",
@@ -54,11 +67,12 @@ __all__ = [
     "replan",
     "report",
     "run_phases",
+    "vector",
 ]
 
 register_environments()
 
-_LATE = ("evaluation", "ocean", "policies", "rendering", "report")
+_LATE = ("evaluation", "ocean", "policies", "rendering", "report", "sb3", "vector")
 
 
 def __getattr__(name: str) -> Any:

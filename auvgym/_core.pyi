@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 __all__ = [
     "ActionError",
+    "Batch",
     "Episode",
     "Navigator",
     "PlanningError",
@@ -24,7 +25,9 @@ __all__ = [
     "__version__",
     "families",
     "list_planners",
+    "maklink",
     "observation_layout",
+    "outcomes",
     "path_cost",
     "plan",
     "replan",
@@ -36,8 +39,13 @@ __version__: str
 
 _Point: TypeAlias = tuple[float, float, float]
 
-# (planner, waypoints (n, 3), feasible, cost, evaluations, history (m, 2), window, coefficients);
-# only here, for type checkers: the engine has no such name.
+# (gap_m, depth_m, corners (n, 3), trace (m, 2), barriers); these are only here, for type checkers:
+# the engine has no such names.
+FoundReport: TypeAlias = tuple[
+    float | None, float, NDArray[np.float64], NDArray[np.float64], list[int]
+]
+# (planner, waypoints (n, 3), feasible, cost, evaluations, history (m, 2), window, harbor,
+# coefficients).
 FoundPlan: TypeAlias = tuple[
     str,
     NDArray[np.float64],
@@ -46,8 +54,11 @@ FoundPlan: TypeAlias = tuple[
     int,
     NDArray[np.float64],
     int | None,
+    FoundReport | None,
     dict[str, float],
 ]
+# (ring (n, 2), numbers) of each zone or cell.
+FoundRings: TypeAlias = list[tuple[NDArray[np.float64], list[int]]]
 
 class ScenarioError(ValueError):
     """A scenario that is not allowed: names file, key, value and what was allowed."""
@@ -202,6 +213,26 @@ class Episode:
     def __reduce__(self) -> tuple[Any, tuple[bytes]]: ...
 
 @final
+class Batch:
+    """Many episodes at once."""
+
+    def __new__(
+        cls, source: Source, count: int, threads: int, autoreset: str, record: bool
+    ) -> Batch: ...
+    def __len__(self) -> int: ...
+    @property
+    def threads(self) -> int: ...
+    def reset(self, seeds: NDArray[np.uint64], mask: NDArray[np.bool_]) -> NDArray[np.float32]: ...
+    def step(
+        self, actions: NDArray[np.float32], seeds: NDArray[np.uint64]
+    ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_]]: ...
+    def info(self, last: bool) -> dict[str, NDArray[Any]]: ...
+    def last_observation(self, index: int) -> NDArray[np.float32]: ...
+    def episode(self, index: int) -> Episode: ...
+    def replace(self, index: int, episode: Episode) -> None: ...
+    def charge(self, index: int, evaluations: int, replans: int) -> None: ...
+
+@final
 class TimeField:
     """Times to the goal over a grid, through the world as it was when this was made."""
 
@@ -252,9 +283,20 @@ class Navigator:
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
 
 def families() -> list[str]: ...
+def outcomes() -> list[str]: ...
 def observation_layout(dimensions: int) -> list[tuple[str, int, int, float, float, str]]: ...
 def sonar_directions(dimensions: int) -> NDArray[np.float64]: ...
 def list_planners() -> list[str]: ...
+def maklink(
+    world: World, start: _Point | None, goal: _Point | None, zones_json: str
+) -> tuple[
+    FoundRings,
+    NDArray[np.float64],
+    FoundRings,
+    NDArray[np.float64],
+    NDArray[np.int64],
+    NDArray[np.int64],
+]: ...
 def plan(
     world: World,
     planner: str,

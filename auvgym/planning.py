@@ -19,6 +19,27 @@ Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
+class HarborReport:
+    """What a planner in a harbour says beside its path.
+
+    Attributes:
+        gap_m: length above that of the shortest path of all round the same danger zones (planner
+            ``visibility``), m; below 0 where smoothing cuts through zones. None if there is no way.
+        depth_m: how deep the path gets into danger zones, m; 0 unless smoothing cuts into them.
+        corners: the path before smoothing, (n, 3) float64 m.
+        trace: the least value so far of what the planner minimises against evaluations, (m, 2)
+            float64: of swarms and ants the cost F, generation by generation, else the length, m.
+        barriers: where there is no way, the polygons whose zones part the goal from the start.
+    """
+
+    gap_m: float | None
+    depth_m: float
+    corners: Array = field(repr=False)
+    trace: Array = field(repr=False)
+    barriers: list[int]
+
+
+@dataclass(frozen=True, eq=False)
 class Plan:
     """What a planner found.
 
@@ -30,8 +51,9 @@ class Plan:
         evaluations: counted budget: fitness evaluations, or nodes settled by grid planners.
         history: best total cost against evaluations so far, (m, 2) float64.
         window: sections of the last planning window, where one was used.
-        coefficients: those of the flow that drew the path, chosen or tuned (``rho``, ``sigma``,
-            ``theta``, ``lambda``); empty for all but the planners ``iifds``.
+        harbor: what planners of harbours say of the path; None from others.
+        coefficients: those of the flow that drew the path (``rho``, ``sigma``, ``theta``,
+            ``lambda``), chosen or tuned; empty for all but the planners ``iifds``.
     """
 
     planner: str
@@ -41,6 +63,7 @@ class Plan:
     evaluations: int
     history: Array = field(repr=False)
     window: int | None = None
+    harbor: HarborReport | None = None
     coefficients: dict[str, float] = field(default_factory=dict)
 
 
@@ -114,29 +137,49 @@ def plan(
     )
 
 
-def gap(world: World, path: Plan | npt.ArrayLike, cost: str = "lfhh", **options: Any) -> float:
-    """What a path costs above the exact reference of the same problem, planner ``section-optimum``.
+def gap(world: World, path: Plan | npt.ArrayLike, cost: str | None = None, **options: Any) -> float:
+    """What a path costs above the exact reference of the same problem.
+
+    In a harbour (a 2-D world with polygons) that is length, m, above the shortest path round the
+    danger zones, planner ``visibility``; elsewhere a cost above planner ``section-optimum``.
 
     Args:
         world: the world as it was when the path was planned.
         path: a plan, or waypoints (n, 3) m.
-        cost: as for :func:`path_cost`.
-        **options: readings of the cost.
+        cost: "length", or as for :func:`path_cost`; None is "length" in harbours, else "lfhh".
+        **options: readings of the cost; of "length" those of danger zones, see :func:`maklink`.
 
     Returns:
         The difference of the totals. Near 0 for the best section plans; below 0 where waypoints
-        lie better between the reference's places, or off the sections.
+        lie better between the reference's places, or off the sections, or in danger zones.
+        Infinite if zones leave no way.
 
     Raises:
-        PlanningError, KeyboardInterrupt: as :func:`plan`.
+        PlanningError, KeyboardInterrupt: as :func:`plan`; "length" only in worlds that have zones.
     """
     waypoints = path.waypoints if isinstance(path, Plan) else _path("path", path)
-    total = path_cost(world, waypoints, cost, **options)["total"]
     start, goal = waypoints[0], waypoints[-1]
+    if cost is None:
+        cost = "length" if is_harbor(world) else "lfhh"
+    if cost == "length":
+        best = plan(world, "visibility", start=start, goal=goal, zones=options)
+        return _length_m(waypoints) - _length_m(best.waypoints) if best.feasible else np.inf
+    total = path_cost(world, waypoints, cost, **options)["total"]
     reference = plan(
         world, "section-optimum", start=start, goal=goal, cost=cost, cost_options=options
     )
     return total - reference.cost["total"]
+
+
+def is_harbor(world: World) -> bool:
+    """Whether a world is a harbour: 2-D, with polygons."""
+    if world.dimensions != 2:
+        return False
+    return any(one["kind"] == "polygon" for one in world.snapshot()["obstacles"])
+
+
+def _length_m(path: Array) -> float:
+    return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
 
 
 def replan(
@@ -247,7 +290,8 @@ def _window(window: int) -> int:
 
 
 def _plan(found: _core.FoundPlan) -> Plan:
-    return Plan(*found)
+    report = None if found[7] is None else HarborReport(*found[7])
+    return Plan(*found[:7], report, found[8])
 
 
 def _check_planner(planner: str) -> None:

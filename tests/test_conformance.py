@@ -9,7 +9,7 @@ import os
 import signal
 import subprocess
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import Any
@@ -41,6 +41,7 @@ class Kind:
             may end earlier.
         clear: whether ``feasible`` says that nothing solid is met, however much a path turns;
             otherwise it says that no constraint of the cost is broken.
+        plane: whether it knows 2-D worlds of polygons, discs and cylinders only.
         wrong: a parameter of its own with a value that is not allowed.
     """
 
@@ -52,6 +53,7 @@ class Kind:
     counted: bool = True
     exhaust: Parameters | None = None
     clear: bool = False
+    plane: bool = False
 
 
 KINDS = {
@@ -109,11 +111,26 @@ KINDS = {
         random=False,
         wrong={"lateral_m": -1},
     ),
+    # Where start sees goal, or there is no way, a swarm has nothing to search.
+    "harbour swarms": Kind(
+        planners=("maklink-aco", "maklink-pso", "rmpso"),
+        brief=lambda edge: {"generations": 3, "population": 12},
+        endless={"generations": 10**8},
+        clear=True,
+        plane=True,
+        wrong={"population": 0},
+    ),
+    "harbour graphs": Kind(
+        planners=("maklink-dijkstra", "funnel", "visibility"),
+        brief=lambda edge: {},
+        random=False,
+        clear=True,
+        plane=True,
+        wrong={"cut_m": -1},
+    ),
 }
 KIND_OF = {planner: kind for kind in KINDS.values() for planner in kind.planners}
-# Planners of harbours know polygons in a plane only: tests/test_harbor.py asks the same of them.
-IN_HARBOURS = ("maklink-dijkstra", "maklink-aco", "maklink-pso", "rmpso", "funnel", "visibility")
-PLANNERS = [name for name in auvgym.list_planners() if name not in IN_HARBOURS]
+PLANNERS = auvgym.list_planners()
 COSTS = ["lfhh", "afhh", "time", "energy"]
 
 
@@ -132,11 +149,24 @@ WORLDS: dict[str, Callable[[], World]] = {
     "other obstacles, 2-D": lambda: world(2, obstacles=other_obstacles()),
     "other obstacles, 3-D": lambda: world(3, obstacles=other_obstacles()),
     "gridded sea": gridded_sea,
+    "harbor-a": lambda: World("harbor-a"),
 }
+# What planners that know nothing but outlines can plan on; they refuse the others.
+PLANE = ("lfhh-2d-1", "harbor-a", "AUVDynamic2D-v0", "AUVHarbor2D-v0", 2)
+
+
+def on(argument: str, names: Iterable[str | int]) -> pytest.MarkDecorator:
+    """Every planner on each of the worlds that it knows."""
+    pairs = [
+        (planner, name)
+        for planner in PLANNERS
+        for name in names
+        if name in PLANE or not KIND_OF[planner].plane
+    ]
+    return pytest.mark.parametrize(("planner", argument), pairs)
+
 
 every_planner = pytest.mark.parametrize("planner", PLANNERS)
-every_world = pytest.mark.parametrize("name", WORLDS)
-both_dimensions = pytest.mark.parametrize("dimensions", [2, 3])
 
 
 def those(wanted: Callable[[Kind], Any]) -> pytest.MarkDecorator:
@@ -191,8 +221,7 @@ def test_every_planner_has_a_kind() -> None:
 # --- plans -------------------------------------------------------------------------------------
 
 
-@every_planner
-@every_world
+@on("name", WORLDS)
 @pytest.mark.parametrize("cost", COSTS)
 def test_a_plan_is_what_it_says(planner: str, name: str, cost: str) -> None:
     ocean = WORLDS[name]()
@@ -208,8 +237,7 @@ def test_a_plan_is_what_it_says(planner: str, name: str, cost: str) -> None:
         assert plan.feasible == bool(plan.cost["feasible"])
 
 
-@every_planner
-@pytest.mark.parametrize("name", ["lfhh-2d-1", "lfhh-3d-1, changed", "gridded sea"])
+@on("name", ["lfhh-2d-1", "lfhh-3d-1, changed", "gridded sea"])
 def test_the_same_seed_gives_the_same_bytes_in_two_threads_as_in_one(
     planner: str, name: str
 ) -> None:
@@ -227,8 +255,7 @@ def test_the_same_seed_gives_the_same_bytes_in_two_threads_as_in_one(
     assert same(alone[0], alone[1]) != KIND_OF[planner].random
 
 
-@every_planner
-@pytest.mark.parametrize("name", ["lfhh-2d-1", "lfhh-3d-1, changed", "afhh-1"])
+@on("name", ["lfhh-2d-1", "lfhh-3d-1, changed", "afhh-1"])
 def test_start_and_goal_can_be_anywhere(planner: str, name: str) -> None:
     ocean = WORLDS[name]()
     low, high = ocean.domain
@@ -242,7 +269,7 @@ def test_start_and_goal_can_be_anywhere(planner: str, name: str) -> None:
 
 @every_planner
 def test_start_and_goal_can_be_one_place(planner: str) -> None:
-    ocean = World("lfhh-3d-1")
+    ocean = World("lfhh-2d-1" if KIND_OF[planner].plane else "lfhh-3d-1")
     options = brief(planner, ocean)
     plan = auvgym.plan(ocean, planner, goal=ocean.start, seed=1, **options)
     check(ocean, plan, ocean.start, ocean.start)
@@ -285,8 +312,7 @@ def test_generations_limit_the_search(planner: str) -> None:
 # --- no way ------------------------------------------------------------------------------------
 
 
-@every_planner
-@both_dimensions
+@on("dimensions", [2, 3])
 @pytest.mark.parametrize("closed", [lambda: [wall()], pen], ids=["wall", "pen"])
 def test_no_way_is_an_answer(
     planner: str, dimensions: int, closed: Callable[[], list[dict[str, Any]]]
@@ -321,7 +347,7 @@ def test_a_current_that_cannot_be_beaten_is_an_answer(planner: str) -> None:
 
 SCRIPT = """
 import time, auvgym
-world = auvgym.World("lfhh-3d-1")
+world = auvgym.World("{name}")
 print("planning", flush=True)
 try:
     auvgym.{ask}, **{parameters})
@@ -331,10 +357,10 @@ except KeyboardInterrupt:
 """
 
 
-def stop_within_a_second(ask: str, parameters: Parameters) -> None:
+def stop_within_a_second(ask: str, parameters: Parameters, name: str = "lfhh-3d-1") -> None:
     """Send Ctrl-C to a process that asks for this; ``ask`` is a call without its end."""
     with subprocess.Popen(
-        fresh_python.command(SCRIPT.format(ask=ask, parameters=parameters)),
+        fresh_python.command(SCRIPT.format(ask=ask, parameters=parameters, name=name)),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -357,7 +383,8 @@ def stop_within_a_second(ask: str, parameters: Parameters) -> None:
 @pytest.mark.skipif(os.name != "posix", reason="sends SIGINT")
 @those(lambda kind: kind.endless)
 def test_ctrl_c_stops_planning_within_a_second(planner: str) -> None:
-    stop_within_a_second(f"plan(world, '{planner}'", KIND_OF[planner].endless)
+    name = "harbor-a" if KIND_OF[planner].plane else "lfhh-3d-1"
+    stop_within_a_second(f"plan(world, '{planner}'", KIND_OF[planner].endless, name)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="sends SIGINT")
@@ -372,8 +399,7 @@ def test_ctrl_c_stops_replanning_within_a_second(ask: str) -> None:
 # --- re-planning and flying --------------------------------------------------------------------
 
 
-@every_planner
-@pytest.mark.parametrize("name", ["lfhh-2d-1", "lfhh-3d-1"])
+@on("name", ["lfhh-2d-1", "lfhh-3d-1"])
 def test_a_replan_changes_only_its_window(planner: str, name: str) -> None:
     ocean = World(name)
     first = auvgym.plan(ocean, "lfhh", seed=1, generations=40).waypoints
@@ -413,8 +439,7 @@ def test_all_attempts_of_a_replan_share_its_budget(planner: str) -> None:
     assert plan.evaluations <= 333
 
 
-@every_planner
-@pytest.mark.parametrize("environment", ["AUVDynamic2D-v0", "AUVStatic3D-v0"])
+@on("environment", ["AUVDynamic2D-v0", "AUVStatic3D-v0", "AUVHarbor2D-v0"])
 def test_every_planner_flies_an_episode_to_its_end(planner: str, environment: str) -> None:
     env = gymnasium.make(f"auvgym:{environment}")
     observation, info = env.reset(seed=2)

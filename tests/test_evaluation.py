@@ -18,8 +18,6 @@ from auvgym.evaluation import (
     Store,
     StoreError,
     Suite,
-    SuiteError,
-    load_suite,
     replay,
     run,
     summarise,
@@ -50,6 +48,10 @@ class Nan(Raises):
     def act(self, observation, info): return self.env.action_space.low * float("nan")
 class Quits(Raises):
     def act(self, observation, info): raise SystemExit(3)
+class Sleeps(Raises):
+    def act(self, observation, info): import time; time.sleep(60)
+class Spins(Raises):
+    def reset(self, env): sum(range(10**12))  # in C, and never lets go of the interpreter
 """
 
 
@@ -121,19 +123,34 @@ def test_an_interrupt_keeps_what_has_ended(
 @pytest.mark.usefixtures("failing")
 def test_a_policy_that_fails_loses_its_episode_only() -> None:
     suite = Suite("one", SUITE.instances[:1])
-    names = ["Raises", "Exits", "Nan", "Quits"]
+    names = ["Raises", "Exits", "Nan", "Quits", "Sleeps", "Spins"]
     specs = [PolicySpec(f"failing_policies:{name}") for name in names] + [PolicySpec("straight")]
     with Store(None) as store:
-        results = {one.policy: one for one in run(suite, specs, store, workers=2)}
+        results = {one.policy: one for one in run(suite, specs, store, 2, step_limit_s=1.0)}
     errors = {name: results[f"failing_policies:{name}"] for name in names}
-    assert all(one.outcome == "error" and one.score == 0.0 for one in errors.values())
+    assert all(one.policy_failed and one.score == 0.0 for one in errors.values())
+    outcomes = {name: one.outcome for name, one in errors.items()}
+    assert outcomes == {
+        "Raises": "error", "Exits": "exit", "Nan": "invalid_action", "Quits": "error",
+        "Sleeps": "overtime", "Spins": "overtime",
+    }  # fmt: skip
     assert errors["Raises"].error == "RuntimeError: lost my way"
     assert errors["Raises"].steps == 2
     assert errors["Exits"].error == "the process ended with exit code 7"
     assert errors["Nan"].error
     assert errors["Quits"].error == "SystemExit: 3"
     assert results["straight"].outcome != "error"
-    assert replay(errors["Raises"]).differences == []
+    assert all(replay(one).differences == [] for one in errors.values())
+
+
+@pytest.mark.usefixtures("failing")
+def test_a_stranger_s_policy_cannot_end_the_only_process() -> None:
+    suite = Suite("one", SUITE.instances[:1])
+    specs = [PolicySpec("failing_policies:Exits"), PolicySpec("straight")]
+    with Store(None) as store:
+        results = {one.policy: one.outcome for one in run(suite, specs, store)}
+    assert results.pop("failing_policies:Exits") == "exit"
+    assert set(results) == {"straight"}
 
 
 @pytest.mark.parametrize("spec", [PolicySpec("strait"), PolicySpec("straight", 0, {"speed": 3.0})])
@@ -225,41 +242,6 @@ def test_an_episode_is_stored_once(tmp_path: Path, flown: list[EpisodeResult]) -
         first.add(flown[0])
         second.add(dataclasses.replace(flown[0], score=9.0))
         assert first.results() == second.results() == [flown[0]]
-
-
-def test_the_shipped_suites_load() -> None:
-    assert "demo" in evaluation.list_suites()
-    demo = load_suite("demo")
-    assert {one.environment for one in demo.instances} == {"AUVDynamic2D-v0", "AUVDynamic3D-v0"}
-    assert len(demo.hash) == 16
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("schema = 1", "name is missing"),
-        ('name = "x"', "schema is None"),
-        ('schema = 1\nname = "x"', "no \\[\\[instances\\]\\]"),
-        ('schema = 1\nname = "x"\nseed = 3', "unknown key 'seed'"),
-        ('schema = 1\nname = "x"\n[[instances]]\nseeds = [1]', "environment is missing"),
-        ('schema = 1\nname = "x"\n[[instances]]\nenvironment = "A"', "seeds is None"),
-        ('schema = 1\nname = "x"\n[[instances]]\nenvironment = "A"\nseeds = [-1]', "seeds is"),
-        ('schema = 1\nname = "x"\n[[instances]]\nenvironment = "A"\nseeds = [1, 1]', "twice"),
-        ("schema = ", "suite .*toml"),
-    ],
-)
-def test_a_suite_that_makes_no_sense_says_why(text: str, message: str, tmp_path: Path) -> None:
-    path = tmp_path / "suite.toml"
-    path.write_text(text)
-    with pytest.raises(SuiteError, match=message):
-        load_suite(path)
-
-
-def test_a_suite_that_is_not_there() -> None:
-    with pytest.raises(SuiteError, match="did you mean 'demo'"):
-        load_suite("demos")
-    with pytest.raises(SuiteError, match="cannot be read"):
-        load_suite("/no/such/suite.toml")
 
 
 def test_the_ranking_counts_failures(flown: list[EpisodeResult]) -> None:

@@ -33,7 +33,7 @@ CARD = Card(
 
 
 @pytest.mark.parametrize(
-    "name", [name for name in reproduction.list_cards() if not name.startswith("iifds")]
+    "name", [name for name in reproduction.list_cards() if not name.startswith(("iifds", "rmpso"))]
 )
 def test_a_card_is_whole(name: str) -> None:
     card = load_card(name)
@@ -52,6 +52,37 @@ def test_a_card_is_whole(name: str) -> None:
             found = [*end[:2], 20.0 * unit - end[2]][: len(wanted)]
             assert found == pytest.approx(wanted), case.label
     assert len(card.runs(2)) == 2 * len(card.runs(1)) > 0
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in reproduction.list_cards() if name.startswith("rmpso")]
+)
+def test_a_harbours_card_is_whole(name: str, tmp_path: Path) -> None:
+    card = load_card(name)
+    assert (card.view, card.protocol, card.journal) == ("distributions", "harbor", "rmpso")
+    for case in card.cases:
+        for figures in case.paper.values():
+            assert len(figures) == len(card.columns)
+    outcomes = {}
+    for run in set(card.runs(2)):
+        done = execute(run)
+        assert isinstance(done, Outcome), f"{run}: {done}"
+        assert set(card.measures) <= set(done.measures)
+        # Nothing that keeps out of the zones is shorter than the exact answer.
+        if done.measures["inside_m"] == 0.0 and done.feasible and name != "rmpso-table3":
+            assert done.measures["gap_percent"] > -1e-6
+        outcomes[run] = done
+    page = reproduction.write_card(card, outcomes, 2, tmp_path).read_text(encoding="utf-8")
+    for word in ("mean ± sd", "median", "95 %", "## Why", f"({name}-maps.png)"):
+        assert word in page
+    assert (tmp_path / f"{name}-maps.png").stat().st_size > 20_000
+
+
+def test_the_raster_of_table_3_is_the_papers_length() -> None:
+    card = load_card("rmpso-table3")
+    done = execute(card.run(card.cases[0], card.columns[0], 0))
+    assert isinstance(done, Outcome)
+    assert done.measures["length_m"] == pytest.approx(23 * math.sqrt(2) + 18)
 
 
 def test_cards_of_one_paper_share_their_runs() -> None:

@@ -8,11 +8,15 @@ import typer
 
 from auvgym.cli.console import FriendlyGroup, print_version
 from auvgym.cli.evaluate import evaluate
+from auvgym.cli.export import export
 from auvgym.cli.leaderboard import leaderboard
 from auvgym.cli.listing import list_names
 from auvgym.cli.plan import plan
 from auvgym.cli.replay import replay
+from auvgym.cli.report import report
 from auvgym.cli.reproduce import reproduce
+from auvgym.cli.suite import suite
+from auvgym.cli.verify import verify
 
 app = typer.Typer(
     name="auvgym",
@@ -41,6 +45,10 @@ app.command("evaluate")(evaluate)
 app.command("leaderboard")(leaderboard)
 app.command("replay")(replay)
 app.command("reproduce")(reproduce)
+app.command("suite")(suite)
+app.command("verify")(verify)
+app.command("report")(report)
+app.command("export")(export)
 
 
 def main() -> None:

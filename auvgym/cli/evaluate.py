@@ -8,11 +8,17 @@ from typing import Annotated
 import typer
 
 from auvgym.cli.console import output, parse_settings
+from auvgym.cli.flying import STEP_LIMIT_S, Engine, EngineOption, StepLimitOption
 
 
 def evaluate(
     policy: Annotated[
-        str, typer.Option("--policy", help="A name of `auvgym list policies`, or module:Class.")
+        str,
+        typer.Option(
+            "--policy",
+            help="A name of `auvgym list policies`, module:Class, a file agent.onnx with its card "
+            "agent.json, or an SB3 agent.zip (which runs code of its author).",
+        ),
     ],
     environment: Annotated[str, typer.Option("--env", help="Environment id.")] = "AUVDynamic2D-v0",
     difficulty: Annotated[
@@ -33,6 +39,8 @@ def evaluate(
         typer.Option("--set", help="A parameter of the policy, key=value; may be repeated."),
     ] = None,
     workers: Annotated[int, typer.Option(help="Processes to fly in.")] = 1,
+    engine: EngineOption = Engine.processes,
+    step_limit: StepLimitOption = STEP_LIMIT_S,
     out: Annotated[
         Path | None,
         typer.Option(help="Keep the episodes in FOLDER/results.db, and go on from there."),
@@ -58,7 +66,7 @@ def evaluate(
     with evaluation.Store(path) as store:
         if fresh:
             store.forget(instances)
-        results = fly_with_progress(instances, [spec], store, workers)
+        results = fly_with_progress(instances, [spec], store, workers, engine.value, step_limit)
     show(results)
     if path is not None:
         output().print(f"Episodes: {path}", soft_wrap=True)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import enum
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -12,33 +13,72 @@ from auvgym.cli.progress import progress_bar
 
 if TYPE_CHECKING:
     from auvgym.evaluation import EpisodeResult, PolicySpec, Store, Suite
+    from auvgym.evaluation.runner import Flies
+
+
+# That of auvgym.evaluation.runner, which is imported only where it is used.
+STEP_LIMIT_S = 120.0
+
+
+class Engine(enum.Enum):
+    """Where episodes are flown."""
+
+    processes = "processes"
+    ray = "ray"
+
+
+EngineOption = Annotated[
+    Engine,
+    typer.Option(help="Processes here, or a Ray cluster (RAY_ADDRESS, else one on this machine)."),
+]
+StepLimitOption = Annotated[
+    float, typer.Option(help="Seconds that one call of a policy may take before it loses.")
+]
 
 
 def fly_with_progress(
-    suite: Suite, specs: Sequence[PolicySpec], store: Store, workers: int
+    suite: Suite,
+    specs: Sequence[PolicySpec],
+    store: Store,
+    workers: int,
+    engine: Literal["processes", "ray"] = "processes",
+    step_limit_s: float = STEP_LIMIT_S,
+    flies: Flies | None = None,
 ) -> list[EpisodeResult]:
     """Run ``suite``; on Ctrl-C say what is kept and how to go on, and exit with 130."""
     from auvgym import evaluation
+    from auvgym.evaluation.store import key
 
     console = messages()
     bar = progress_bar(console)
-    total = len(suite.instances) * len(specs)
+    wanted = [
+        key(suite, spec, one)
+        for spec in specs
+        for one in suite.instances
+        if flies is None or flies(spec, one)
+    ]
+    total = len(wanted)
+
+    def kept() -> int:
+        return len(store.finished(suite).intersection(wanted))
+
     with bar:
         # What an earlier run left is no measure of this one's speed: it is there from the start.
-        progress = bar.add_task(suite.name, total=total, completed=_kept(store, suite, specs))
+        progress = bar.add_task(suite.name, total=total, completed=kept())
 
         def on_episode(result: EpisodeResult, done: int, total: int) -> None:
             bar.update(progress, completed=done)
 
         try:
-            return evaluation.run(suite, specs, store, workers, on_episode)
+            return evaluation.run(
+                suite, specs, store, workers, on_episode, engine, step_limit_s, flies
+            )
         except KeyboardInterrupt:
             bar.stop()
-            kept = _kept(store, suite, specs)
             text = (
                 "Stopped. Nothing is kept without --out."
                 if store.path is None
-                else f"Stopped. {kept} of {total} episodes are kept in {store.path}; "
+                else f"Stopped. {kept()} of {total} episodes are kept in {store.path}; "
                 "the same command goes on from there."
             )
             console.print(text, style="yellow", markup=False, soft_wrap=True)
@@ -57,15 +97,7 @@ def show(results: Sequence[EpisodeResult]) -> None:
         console.print(table)
         console.print()
     console.print(explanation(columns), style="dim")
-    failed = {result.policy: result for result in reversed(results) if result.outcome == "error"}
+    failed = {result.policy: result for result in reversed(results) if result.policy_failed}
     for policy, result in sorted(failed.items()):
-        text = f"{policy}: error in {result.environment} seed {result.seed}: {result.error}"
+        text = f"{policy}: {result.outcome} in {result.instance.label}: {result.error}"
         messages().print(text, style="yellow", markup=False, soft_wrap=True)
-
-
-def _kept(store: Store, suite: Suite, specs: Sequence[PolicySpec]) -> int:
-    """How many episodes of this run the store holds."""
-    from auvgym.evaluation.store import key
-
-    finished = store.finished(suite)
-    return sum(key(suite, spec, one) in finished for spec in specs for one in suite.instances)

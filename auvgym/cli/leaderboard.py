@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from auvgym.cli.console import messages, output
+from auvgym.cli.flying import STEP_LIMIT_S, Engine, EngineOption, StepLimitOption
 
 if TYPE_CHECKING:
     from auvgym.evaluation import EpisodeResult, Suite
@@ -22,6 +23,8 @@ def leaderboard(
         typer.Option(help="Names, comma-separated, or all; by default the suite's own choice."),
     ] = None,
     workers: Annotated[int, typer.Option(help="Processes to fly in.")] = 1,
+    engine: EngineOption = Engine.processes,
+    step_limit: StepLimitOption = STEP_LIMIT_S,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder of results.db and leaderboard.html (default: results/SUITE)."),
@@ -43,7 +46,11 @@ def leaderboard(
     with evaluation.Store(folder / "results.db") as store:
         if fresh:
             store.forget(instances)
-        results = fly_with_progress(instances, specs, store, workers)
+        # All there is: each where it can fly at all. Who is named flies everywhere.
+        flies = evaluation.fitting if policies == "all" else None
+        results = fly_with_progress(
+            instances, specs, store, workers, engine.value, step_limit, flies
+        )
     show(results)
     output().print(f"Episodes: {folder / 'results.db'}", soft_wrap=True)
     page = _write_page(instances, results, folder / "leaderboard.html")

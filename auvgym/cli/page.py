@@ -40,6 +40,7 @@ def write_leaderboard_page(
     """
     from auvgym import __version__, evaluation, report
     from auvgym.cli.tables import explanation
+    from auvgym.evaluation.suite import stratum_label
 
     summaries = evaluation.summarise(results)
     episodes: dict[str, Any] = {}
@@ -48,7 +49,7 @@ def write_leaderboard_page(
         # Space before plane: the page opens on the first.
         shown.sort(key=lambda pair: -pair[0].flight.maps[0][1].dimensions)
         for replayed, row in shown:
-            label = " · ".join(part for part in (*row.instance.stratum, row.policy) if part)
+            label = f"{stratum_label(row.instance.stratum)} · {row.policy}"
             episodes[label] = episode_figure(replayed, row)
     page = report.leaderboard_page(
         [_cells(summary) for summary in summaries],
@@ -70,12 +71,19 @@ def write_episode_page(row: EpisodeResult, path: Path) -> Replay:
     return replayed
 
 
-def write_plan_page(world: auvgym.World, plan: auvgym.Plan, path: Path) -> Path:
-    """Write a plan on its map."""
+def write_plan_page(
+    world: auvgym.World, plan: auvgym.Plan, path: Path, chart: auvgym.Maklink | None = None
+) -> Path:
+    """Write a plan on its map, and on the chart on which it was planned if there is one."""
+    import numpy as np
+
     from auvgym import report
 
     title = f"{plan.planner} on {world.scenario.name}"
-    return _write(path, report.figure_page(report.plan_figure(world, plan), title))
+    corners = None if plan.harbor is None else plan.harbor.corners
+    if corners is not None and np.array_equal(corners, plan.waypoints):
+        corners = None
+    return _write(path, report.figure_page(report.plan_figure(world, plan, chart, corners), title))
 
 
 def episode_figure(replayed: Replay, row: EpisodeResult) -> Any:
@@ -112,8 +120,10 @@ def _worth_watching(
 
 
 def _cells(summary: PolicySummary) -> dict[str, Any]:
+    from auvgym.evaluation.suite import stratum_label
+
     return {
-        "environment": " · ".join(part for part in summary.stratum if part),
+        "environment": stratum_label(summary.stratum),
         "policy": summary.policy,
         "knows": summary.knows,
         "solved": f"{summary.solved}/{summary.episodes}",

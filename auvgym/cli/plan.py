@@ -54,9 +54,11 @@ def plan(
         float | None, typer.Option(help="Operating depth, m (with --currents).")
     ] = None,
     gap: Annotated[
-        bool, typer.Option("--gap", help="Say what the plan costs above the section optimum.")
+        bool, typer.Option("--gap", help="Say what the plan costs above the exact optimum.")
     ] = False,
-    plot: Annotated[Path | None, typer.Option(help="Write a 3-D view to this HTML file.")] = None,
+    plot: Annotated[
+        Path | None, typer.Option(help="Write a view of the plan to this HTML file.")
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Write the waypoints to this .json or .csv file.")
     ] = None,
@@ -64,6 +66,8 @@ def plan(
     """Plan one path and say what it costs.
 
     [dim]Examples:[/] auvgym plan lfhh-3d-1 --planner lfhh --seed 1 --plot plan.html
+
+    auvgym plan harbor-a --planner rmpso --set smoothing=fillet --gap --plot harbor.html
 
     auvgym plan --currents hycom.nc --bathymetry etopo.nc --start -70,40 --goal -69,36 --out p.csv
     """
@@ -106,7 +110,22 @@ def plan(
     if plot is not None:
         from auvgym.cli.page import write_plan_page
 
-        output().print(f"Plot: {write_plan_page(world, found, plot)}", soft_wrap=True)
+        chart = _chart(world, found, ends, parameters)
+        output().print(f"Plot: {write_plan_page(world, found, plot, chart)}", soft_wrap=True)
+
+
+def _chart(
+    world: auvgym.World,
+    found: auvgym.Plan,
+    ends: dict[str, Any],
+    parameters: dict[str, Any],
+) -> auvgym.Maklink | None:
+    """What a planner of harbours planned on; None for others."""
+    import auvgym
+
+    if found.harbor is None:
+        return None
+    return auvgym.maklink(world, **ends, **parameters.get("zones", {}))
 
 
 def _ocean(
@@ -179,14 +198,32 @@ def _show(world: auvgym.World, found: auvgym.Plan, seconds: float) -> None:
         f"{_travel_time(world, waypoints)}  (straight {_travel_time(world, straight)}, "
         f"in still water {duration(straight_m / speed_mps)})",
     )
+    if found.harbor is not None:
+        _show_harbor(table, found.harbor)
     table.add_row("evaluations", f"{found.evaluations}")
     table.add_row("planning", f"{seconds:.3f} s")
     console.print(table)
 
 
+def _show_harbor(table: Any, report: auvgym.HarborReport) -> None:
+    depth = report.depth_m
+    table.add_row(
+        "danger zones", f"[red]entered, {depth:.2f} m deep[/]" if depth > 1e-6 else "kept out of"
+    )
+    if report.barriers:
+        table.add_row("no way", f"[red]zones of polygons {report.barriers} part the goal[/]")
+    if report.gap_m is not None:
+        table.add_row("above the shortest", f"{report.gap_m:+.3f} m")
+
+
 def _show_gap(world: auvgym.World, found: auvgym.Plan, parameters: dict[str, Any]) -> None:
     import auvgym
+    from auvgym.planning import is_harbor
 
+    if "cost" not in parameters and is_harbor(world):
+        gap = auvgym.gap(world, found, "length", **parameters.get("zones", {}))
+        output().print(f"gap: {gap:+.3f} m above the shortest path round the danger zones")
+        return
     cost, options = parameters.get("cost", "lfhh"), parameters.get("cost_options", {})
     gap = auvgym.gap(world, found, cost, **options)
     output().print(f"gap: {gap:+.4f} above the section optimum in cost {cost}")

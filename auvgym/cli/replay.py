@@ -78,8 +78,7 @@ def _choose(stored: list[EpisodeResult], wanted: dict[str, object]) -> EpisodeRe
 
 
 def _describe(row: EpisodeResult) -> str:
-    parts = (row.policy, row.environment, row.difficulty, row.scenario, f"seed {row.seed}")
-    return " ".join(part for part in parts if part)
+    return f"{row.policy} {row.instance.label}"
 
 
 def _in_window(row: EpisodeResult) -> Replay:

@@ -64,8 +64,8 @@ COLUMNS = (
     Column(
         "gap",
         lambda row: _scaled(row.gap, 1.0, 3),
-        "gap: what a planner's first plan costs above the section optimum, mean over those "
-        "that break no constraint",
+        "gap: what a planner's first plan costs above the exact optimum (in harbours m), mean over "
+        "those that break no constraint",
         dropped=5,
     ),
     Column("evals", lambda row: _count(row.evaluations)),
@@ -78,11 +78,13 @@ COLUMNS = (
 
 
 def ranked_tables(summaries: Sequence[PolicySummary], columns: Sequence[Column]) -> Iterator[Table]:
-    """One table per stratum (environment, difficulty, scenario)."""
+    """One table per stratum (environment, difficulty, scenario, settings)."""
+    from auvgym.evaluation.suite import stratum_label
+
     for stratum, group in groupby(summaries, key=lambda row: row.stratum):
         rows = list(group)
         episodes = max(row.episodes for row in rows)
-        title = " · ".join(part for part in stratum if part)
+        title = stratum_label(stratum)
         table = Table(
             title=Text(f"{title} · {episodes} episodes", style="bold"),
             title_justify="left",

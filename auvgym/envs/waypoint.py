@@ -59,6 +59,7 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
         vortex_drift_mps: float | None = None,
         manoeuvres: str | None = None,
         sensor_noise_m: float | None = None,
+        vessels: int | None = None,
         render_mode: str | None = None,
         **unknown_settings: Any,
     ) -> None:
@@ -90,6 +91,7 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
             "vortex_drift_mps": vortex_drift_mps,
             "manoeuvres": manoeuvres,
             "sensor_noise_m": sensor_noise_m,
+            "vessels": vessels,
         }
         self._source = self._make_source()
         self._episode: _core.Episode | None = None

@@ -9,17 +9,12 @@ from __future__ import annotations
 from auvgym.evaluation.flight import Flight
 from auvgym.evaluation.replay import Replay, ReplayError, replay
 from auvgym.evaluation.result import EpisodeResult, PolicySpec
-from auvgym.evaluation.runner import run
+from auvgym.evaluation.runner import fitting, run
 from auvgym.evaluation.store import Store, StoreError
-from auvgym.evaluation.suite import (
-    Instance,
-    Suite,
-    SuiteError,
-    list_suites,
-    load_suite,
-    single_suite,
-)
+from auvgym.evaluation.suite import Instance, Suite, SuiteError, single_suite
+from auvgym.evaluation.suite_file import list_suites, load_suite
 from auvgym.evaluation.summary import PolicySummary, summarise, wilson_interval
+from auvgym.evaluation.verify import Verification, verify
 
 __all__ = [
     "EpisodeResult",
@@ -33,11 +28,14 @@ __all__ = [
     "StoreError",
     "Suite",
     "SuiteError",
+    "Verification",
+    "fitting",
     "list_suites",
     "load_suite",
     "replay",
     "run",
     "single_suite",
     "summarise",
+    "verify",
     "wilson_interval",
 ]

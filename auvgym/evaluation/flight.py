@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -12,9 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 import auvgym
+from auvgym._names import unknown
+from auvgym.evaluation.oceans import PREFIX, ocean_scenario
 from auvgym.evaluation.suite import Instance, SuiteError
+from auvgym.registration import ENVIRONMENTS
 
 Choose = Callable[[NDArray[np.float32], dict[str, Any]], Any]
+Start = Callable[[NDArray[np.float32], dict[str, Any]], None]
 # T_ref / T stops counting here: slower than eight times the reference is all the same.
 SLOWEST_COUNTED = 8.0
 
@@ -22,17 +27,37 @@ SLOWEST_COUNTED = 8.0
 def make_environment(instance: Instance, render_mode: str | None = None) -> gymnasium.Env[Any, Any]:
     """The environment an instance is flown in; its seed is left to ``reset``.
 
+    Only auvgym's own environments: Gymnasium would import the module that an id names, and a
+    results file or suite may be a stranger's.
+
     Raises:
-        ValueError: there is no such environment, difficulty or scenario.
+        ValueError: there is no such environment, difficulty, scenario or setting.
     """
-    arguments = {"difficulty": instance.difficulty, "scenario": instance.scenario}
+    if instance.environment not in ENVIRONMENTS:
+        raise SuiteError(unknown("environment", instance.environment, ENVIRONMENTS))
+    scenario: Any = instance.scenario
+    if instance.scenario.startswith(PREFIX):
+        scenario = ocean_scenario(instance.scenario.removeprefix(PREFIX))
+    arguments = {"difficulty": instance.difficulty, "scenario": scenario}
     given: dict[str, Any] = {name: value for name, value in arguments.items() if value}
+    if instance.settings:
+        given |= _settings(instance)
     try:
         return gymnasium.make(
             instance.environment, render_mode=render_mode, disable_env_checker=True, **given
         )
-    except gymnasium.error.Error as error:
+    except (gymnasium.error.Error, TypeError) as error:
         raise SuiteError(f'environment "{instance.environment}": {error}') from error
+
+
+def _settings(instance: Instance) -> dict[str, Any]:
+    try:
+        settings = json.loads(instance.settings)
+    except ValueError:
+        settings = None
+    if not isinstance(settings, dict) or {"render_mode", "difficulty", "scenario"} & set(settings):
+        raise SuiteError(f"{instance.environment}: settings is {instance.settings!r}")
+    return settings
 
 
 @dataclass
@@ -54,13 +79,16 @@ class Flight:
     maps: list[tuple[int, Any]] = field(default_factory=list)
 
 
-def fly(flight: Flight, seed: int, start: Callable[[], None], choose: Choose) -> None:
-    """Reset with ``seed``, call ``start``, then step with ``choose`` until the episode ends."""
+def fly(flight: Flight, seed: int, start: Start, choose: Choose) -> None:
+    """Reset with ``seed``, call ``start``, then step with ``choose`` until the episode ends.
+
+    Both are called with the latest observation and info.
+    """
     env = flight.env
     core: Any = env.unwrapped
     observation, flight.info = env.reset(seed=seed)
     flight.maps.append((0, core.world))
-    start()
+    start(observation, flight.info)
     ended = False
     while not ended:
         action = choose(observation, flight.info)

@@ -59,10 +59,10 @@ def replay(
 
     differences: list[str] = []
     try:
-        fly(flight, stored.seed, lambda: None, choose)
+        fly(flight, stored.seed, lambda observation, info: None, choose)
     except StopIteration:
         # A policy that failed left its episode in the air; any other log ends with its episode.
-        if stored.outcome != "error":
+        if not stored.policy_failed:
             differences.append(f"actions: the log ends after {len(actions)}, the episode does not")
     else:
         if on_step is not None:
@@ -71,7 +71,7 @@ def replay(
     if left:
         differences.append(f"actions: the episode ends {left} before the log does")
     for name, value in measures(flight).items():
-        if stored.outcome == "error" and name in _AFTER_AN_ERROR:
+        if stored.policy_failed and name in _AFTER_AN_ERROR:
             continue
         if value != getattr(stored, name):
             differences.append(f"{name}: stored {getattr(stored, name)!r}, replayed {value!r}")

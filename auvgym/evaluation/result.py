@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from auvgym.evaluation.suite import Instance
+
+# How a policy, not the vehicle, can lose an episode.
+POLICY_FAILURES = ("error", "invalid_action", "overtime", "exit")
+# More than any episode takes: legs last a minute at least. A stranger's log is unpacked no further.
+MOST_STEPS = 1_000_000
+MOST_ENTRIES = 3
 
 
 @dataclass(frozen=True)
@@ -35,10 +42,12 @@ class EpisodeResult:
     Attributes:
         suite, suite_hash: the suite it belongs to.
         policy, policy_seed, parameters, knows: who flew; parameters as JSON.
-        environment, difficulty, scenario, seed: the instance.
+        environment, difficulty, scenario, settings, seed: the instance.
         scenario_hash: content hash of the world that was met.
         engine_version: version of the package that flew it.
-        outcome: goal, collision, out_of_bounds, energy, timeout, or error (the policy failed).
+        outcome: goal, collision, out_of_bounds, energy, timeout; or how the policy failed: error
+            (it raised), invalid_action (not finite, of wrong shape or range), overtime (a step
+            took longer than its limit), exit (it ended its process).
         error: the failure's text, else empty.
         success: 1 or 0.
         score: success * T_ref / clip(T, T_ref, 8 T_ref), T_ref = ``still_water_time_s``.
@@ -63,6 +72,7 @@ class EpisodeResult:
     environment: str
     difficulty: str
     scenario: str
+    settings: str
     seed: int
     scenario_hash: str
     engine_version: str
@@ -89,7 +99,23 @@ class EpisodeResult:
     @property
     def instance(self) -> Instance:
         """What was flown."""
-        return Instance(self.environment, self.seed, self.difficulty, self.scenario)
+        return Instance(self.environment, self.seed, self.difficulty, self.scenario, self.settings)
+
+    @property
+    def policy_failed(self) -> bool:
+        """Whether the policy itself, not the vehicle, lost the episode."""
+        return self.outcome in POLICY_FAILURES
+
+    @property
+    def values(self) -> tuple[Any, ...]:
+        """The row's figures in the order of its fields."""
+        return tuple(getattr(self, one.name) for one in fields(self))
+
+    @property
+    def checksum(self) -> str:
+        """16 hex digits over every figure of the row, as it is kept beside it."""
+        parts = [one.hex() if isinstance(one, (bytes, float)) else one for one in self.values]
+        return hashlib.sha256(json.dumps(parts).encode()).hexdigest()[:16]
 
     def action_log(self) -> NDArray[np.float32]:
         """The actions flown, (steps, d) float32."""
@@ -103,6 +129,18 @@ def pack_actions(actions: list[NDArray[np.float32]]) -> bytes:
 
 
 def unpack_actions(packed: bytes, steps: int) -> NDArray[np.float32]:
-    """The reverse of :func:`pack_actions`: (steps, d) float32."""
-    flat = np.frombuffer(zlib.decompress(packed), dtype="<f4").astype(np.float32)
+    """The reverse of :func:`pack_actions`: (steps, d) float32.
+
+    Raises:
+        ValueError, zlib.error: it is no log of that many steps; no more than such a log is
+            unpacked, whatever the bytes stand for.
+    """
+    if not 0 <= steps <= MOST_STEPS:
+        raise ValueError(f"{steps} steps; at most {MOST_STEPS} are possible")
+    unpacker = zlib.decompressobj()
+    most = 4 * MOST_ENTRIES * steps
+    unpacked = unpacker.decompress(packed, most + 1)
+    if len(unpacked) > most or not unpacker.eof or unpacker.unused_data:
+        raise ValueError(f"it does not hold {steps} steps")
+    flat = np.frombuffer(unpacked, dtype="<f4").astype(np.float32)
     return flat.reshape(steps, -1) if steps else flat.reshape(0, 0)

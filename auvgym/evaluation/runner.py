@@ -4,33 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
-from typing import Any
-
-import gymnasium
+from typing import Any, Literal
 
 import auvgym
 from auvgym import policies
-from auvgym.evaluation.flight import Flight, fly, make_environment, measures
-from auvgym.evaluation.result import EpisodeResult, PolicySpec, pack_actions
-from auvgym.evaluation.store import Store, key
-from auvgym.evaluation.suite import Instance, Suite
+from auvgym.evaluation.result import EpisodeResult, PolicySpec
+from auvgym.evaluation.store import Store, key, result_key
+from auvgym.evaluation.suite import Instance, Suite, SuiteError
+from auvgym.evaluation.task import Task, environment, lost, run_task
 from auvgym.evaluation.workers import ProcessDiedError, run_tasks
+from auvgym.policies.registry import is_shipped
 
 # Called with each episode as it is stored, the number stored so far, and the number in all.
 OnEpisode = Callable[[EpisodeResult, int, int], None]
-
-
-@dataclass(frozen=True)
-class Task:
-    """One episode to fly."""
-
-    suite: str
-    suite_hash: str
-    policy: PolicySpec
-    knows: str
-    instance: Instance
+# Whether a policy flies an instance.
+Flies = Callable[[PolicySpec, Instance], bool]
+Engine = Literal["processes", "ray"]
+STEP_LIMIT_S = 120.0
 
 
 def run(
@@ -39,12 +31,30 @@ def run(
     store: Store,
     workers: int = 1,
     on_episode: OnEpisode | None = None,
+    engine: Engine = "processes",
+    step_limit_s: float | None = STEP_LIMIT_S,
+    flies: Flies | None = None,
 ) -> list[EpisodeResult]:
     """Fly every (policy, instance) pair that ``store`` does not hold yet.
 
-    Results do not depend on ``workers``; with 1 they are flown in this process. A policy that
-    raises, or ends its process, loses that episode with outcome ``"error"`` and the run goes on.
-    On ``KeyboardInterrupt`` the processes are stopped and what had ended is in the store.
+    Results depend neither on ``workers`` nor on ``engine``. A policy that raises, gives an action
+    that is none, takes longer than ``step_limit_s`` or ends its process loses that episode, with an
+    outcome that says so, and the run goes on. On ``KeyboardInterrupt`` the processes are stopped
+    and what had ended is in the store.
+
+    Args:
+        suite: what is flown.
+        specs: who flies.
+        store: where results go, and what need not be flown again.
+        workers: processes to fly in. With 1, auvgym's own policies fly in this process; anybody
+            else's always have one of their own, which they may end.
+        on_episode: called as each episode is stored.
+        engine: ``"processes"`` on this machine, or ``"ray"``: a Ray cluster (extra ``ray``), that
+            which ``ray.init()`` finds or this machine, with ``workers`` tasks at a time.
+        step_limit_s: wall clock that one call of a policy may take; None for no limit. It does not
+            hold for auvgym's own policies in this process.
+        flies: which pairs are flown; by default all. :func:`fitting` leaves out planners where they
+            cannot plan.
 
     Returns:
         The results of these policies on this suite, those of earlier runs included.
@@ -52,102 +62,85 @@ def run(
     Raises:
         ValueError: an unknown policy, environment or setting, or results that do not go with
             this suite or engine; before any episode is flown.
+        SuiteError: a world is not what it was when the suite was frozen; what was flown before it
+            was noticed is kept.
+        ImportError: a library that a policy or the engine needs.
     """
     if workers < 1:
         raise ValueError(f"workers is {workers}; at least 1 is needed")
+    if engine not in ("processes", "ray"):
+        raise ValueError(f"engine is {engine!r}; it is 'processes' or 'ray'")
+    if step_limit_s is not None and not step_limit_s > 0.0:
+        raise ValueError(f"step_limit_s is {step_limit_s}; it is seconds above 0, or None")
     store.check_same(suite, auvgym.__version__)
+    specs = [
+        replace(spec, parameters=policies.frozen_parameters(spec.name, spec.parameters))
+        for spec in specs
+    ]
     made = [policies.make(spec.name, spec.seed, **spec.parameters) for spec in specs]
     for instance in {replace(instance, seed=0) for instance in suite.instances}:
-        _environment(instance)
+        environment(instance)
     suite_hash = suite.hash
     pairs = {
         key(suite, spec, instance): Task(
-            suite.name, suite_hash, spec, str(getattr(policy, "knows", "map")), instance
+            suite.name,
+            suite_hash,
+            spec,
+            str(getattr(policy, "knows", "map")),
+            instance,
+            step_limit_s,
         )
         for instance in suite.instances
         for spec, policy in zip(specs, made, strict=True)
+        if flies is None or flies(spec, instance)
     }
     finished = store.finished(suite)
     tasks = [task for name, task in pairs.items() if name not in finished]
     done = len(pairs) - len(tasks)
     # closing: an interrupt that arrives here, outside the iteration, must end its processes too.
-    with closing(_results(tasks, workers)) as results:
+    with closing(_results(tasks, workers, engine)) as results:
         for result in results:
+            if isinstance(result, SuiteError):
+                raise result
             store.add(result)
             done += 1
             if on_episode is not None:
                 on_episode(result, done, len(pairs))
-    return [
-        result
-        for result in store.results(suite)
-        if (
-            result.suite, result.policy, result.policy_seed, result.parameters,
-            result.environment, result.difficulty, result.scenario, result.seed,
-        ) in pairs
-    ]  # fmt: skip
+    return [result for result in store.results(suite) if result_key(result) in pairs]
 
 
-def _results(tasks: Sequence[Task], workers: int) -> Generator[EpisodeResult, None, None]:
-    if workers == 1:
+def fitting(spec: PolicySpec, instance: Instance) -> bool:
+    """Whether a policy can fly an instance at all: a planner for harbours plans in no tank.
+
+    A planner is asked for a plan of one evaluation in a world of the instance's kind; everybody
+    else can.
+    """
+    if spec.name not in auvgym.list_planners():
+        return True
+    return _can_plan(spec.name, replace(instance, seed=0))
+
+
+@lru_cache(maxsize=512)
+def _can_plan(planner: str, instance: Instance) -> bool:
+    env: Any = environment(instance)
+    env.reset(seed=instance.seed)
+    try:
+        auvgym.plan(env.unwrapped.world, planner, max_evaluations=1)
+    except auvgym.PlanningError:
+        return False
+    return True
+
+
+def _results(
+    tasks: Sequence[Task], workers: int, engine: Engine
+) -> Generator[EpisodeResult | SuiteError, None, None]:
+    if engine == "ray":
+        from auvgym.evaluation.ray_engine import run_tasks_on_ray as fly
+    elif workers == 1 and all(is_shipped(task.policy.name) for task in tasks):
         yield from map(run_task, tasks)
         return
-    with closing(run_tasks(run_task, tasks, workers)) as results:
+    else:
+        fly = run_tasks
+    with closing(fly(run_task, tasks, workers)) as results:
         for task, result in results:
-            yield _lost(task, str(result)) if isinstance(result, ProcessDiedError) else result
-
-
-def run_task(task: Task) -> EpisodeResult:
-    """Fly one episode with a policy made for it; a policy's failure becomes its outcome."""
-    flight = Flight(_environment(replace(task.instance, seed=0)))
-    policy: Any = None
-    error = ""
-    try:
-        policy = policies.make(task.policy.name, task.policy.seed, **task.policy.parameters)
-        fly(flight, task.instance.seed, lambda: policy.reset(flight.env), policy.act)
-    except KeyboardInterrupt:
-        raise
-    except BaseException as failure:  # SystemExit and a panic of the engine are none of Exception
-        error = f"{type(failure).__name__}: {failure}"
-        _environment.cache_clear()
-    return _result(task, flight, policy, error)
-
-
-@lru_cache(maxsize=16)
-def _environment(instance: Instance) -> gymnasium.Env[Any, Any]:
-    """One environment per process and setting; ``reset`` makes each episode anew."""
-    return make_environment(instance)
-
-
-def _lost(task: Task, error: str) -> EpisodeResult:
-    """The row of an episode whose process died: the instance as it stood at its start."""
-    flight = Flight(_environment(replace(task.instance, seed=0)))
-    return _result(task, flight, None, error)
-
-
-def _result(task: Task, flight: Flight, policy: Any, error: str) -> EpisodeResult:
-    if not flight.maps:
-        _, flight.info = flight.env.reset(seed=task.instance.seed)
-        flight.maps.append((0, flight.env.unwrapped.world))  # type: ignore[attr-defined]
-    measured = measures(flight)
-    if error:
-        measured |= {"outcome": "error", "success": 0, "score": 0.0}
-    return EpisodeResult(
-        suite=task.suite,
-        suite_hash=task.suite_hash,
-        policy=task.policy.name,
-        policy_seed=task.policy.seed,
-        parameters=task.policy.parameters_json,
-        knows=task.knows,
-        environment=task.instance.environment,
-        difficulty=task.instance.difficulty,
-        scenario=task.instance.scenario,
-        seed=task.instance.seed,
-        engine_version=auvgym.__version__,
-        error=error,
-        evaluations=int(getattr(policy, "evaluations", 0)),
-        replans=int(getattr(policy, "replans", 0)),
-        gap=policy.gap() if hasattr(policy, "gap") and not error else None,
-        planning_seconds=float(getattr(policy, "planning_seconds", 0.0)),
-        actions=pack_actions(flight.actions),
-        **measured,
-    )
+            yield lost(task, result) if isinstance(result, ProcessDiedError) else result

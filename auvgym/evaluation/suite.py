@@ -1,30 +1,20 @@
-"""Suites: named lists of frozen instances, kept as data."""
+"""Suites: named lists of frozen instances."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-import sys
-from dataclasses import asdict, dataclass
-from importlib import resources
-from pathlib import Path
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from auvgym._names import unknown
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib  # type: ignore[import-not-found,unused-ignore]
-
-SCHEMA = 1
 DEFAULT_DIFFICULTY = "normal"
-_SUITE_KEYS = {"schema", "name", "description", "policies", "instances"}
-_GROUP_KEYS = {"environment", "difficulty", "scenario", "seeds"}
+Stratum = tuple[str, str, str, str]  # environment, difficulty, scenario, settings
 
 
 class SuiteError(ValueError):
-    """A suite that does not exist or cannot be read."""
+    """A suite that does not exist, cannot be read, or is not what it was."""
 
 
 @dataclass(frozen=True)
@@ -35,18 +25,51 @@ class Instance:
         environment: Gymnasium id, e.g. ``"AUVDynamic2D-v0"``.
         seed: given to ``env.reset``.
         difficulty: of the world that the seed draws; ``""`` with a scenario, which is one world.
-        scenario: a shipped name or a path, or ``""`` for the environment's own draw.
+        scenario: a shipped name, a path or ``"ocean:NAME"`` (:mod:`auvgym.evaluation.oceans`), or
+            ``""`` for the environment's own draw.
+        settings: the environment's other arguments as JSON with sorted keys, ``""`` for none.
+        scenario_hash: the first digits of the hash of the world this is; ``""`` if it is not
+            frozen. Two instances are equal without it.
     """
 
     environment: str
     seed: int
     difficulty: str = DEFAULT_DIFFICULTY
     scenario: str = ""
+    settings: str = ""
+    scenario_hash: str = field(default="", compare=False)
 
     @property
-    def stratum(self) -> tuple[str, str, str]:
-        """What is ranked together: environment, difficulty, scenario."""
-        return self.environment, self.difficulty, self.scenario
+    def stratum(self) -> Stratum:
+        """What is ranked together: environment, difficulty, scenario, settings."""
+        return self.environment, self.difficulty, self.scenario, self.settings
+
+    @property
+    def label(self) -> str:
+        """The instance in words, for messages."""
+        return f"{stratum_label(self.stratum)} seed {self.seed}"
+
+    def change(self, scenario_hash: str) -> str:
+        """What differs between the world that was met and the one that was frozen, else empty."""
+        if scenario_hash.startswith(self.scenario_hash):
+            return ""
+        return (
+            f"{self.label}: the world has changed since the suite was frozen (hash "
+            f"{self.scenario_hash} then, {scenario_hash[:16]} now); results would not be comparable"
+        )
+
+
+def stratum_label(stratum: Stratum) -> str:
+    """``AUVDynamic2D-v0 · normal · variant paper``."""
+    *parts, settings = stratum
+    if settings:
+        parts += [f"{name} {value}" for name, value in json.loads(settings).items()]
+    return " · ".join(part for part in parts if part)
+
+
+def settings_json(settings: Mapping[str, Any]) -> str:
+    """Arguments of an environment as :attr:`Instance.settings` has them."""
+    return json.dumps(dict(settings), sort_keys=True) if settings else ""
 
 
 @dataclass(frozen=True)
@@ -60,44 +83,19 @@ class Suite:
 
     @property
     def hash(self) -> str:
-        """16 hex digits over the instances: a suite that changed is another suite."""
+        """16 hex digits over the instances and their worlds: a suite that changed is another."""
         text = json.dumps([asdict(instance) for instance in self.instances], sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
+    @property
+    def frozen(self) -> bool:
+        """Whether every instance names its world's hash."""
+        return all(instance.scenario_hash for instance in self.instances)
 
-def list_suites() -> list[str]:
-    """Names of the shipped suites."""
-    folder = resources.files("auvgym.evaluation") / "suites"
-    return sorted(
-        entry.name.removesuffix(".toml")
-        for entry in folder.iterdir()
-        if entry.name.endswith(".toml")
-    )
-
-
-def load_suite(name_or_path: str | Path) -> Suite:
-    """Read a shipped suite by name, or one's own from a TOML file.
-
-    Raises:
-        SuiteError: no such suite, or a file that is not a suite.
-    """
-    text = str(name_or_path)
-    if text.endswith(".toml"):
-        path = Path(text)
-        try:
-            content = path.read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise SuiteError(f"suite {path}: cannot be read ({error})") from error
-    elif text in list_suites():
-        content = (resources.files("auvgym.evaluation") / "suites" / f"{text}.toml").read_text(
-            encoding="utf-8"
-        )
-    else:
-        raise SuiteError(f"{unknown('suite', text, list_suites())}, or a path that ends in .toml")
-    try:
-        return _parse(tomllib.loads(content))
-    except (tomllib.TOMLDecodeError, SuiteError) as error:
-        raise SuiteError(f"suite {text}: {error}") from error
+    @property
+    def strata(self) -> dict[Stratum, int]:
+        """How many instances each stratum has, in the suite's order."""
+        return dict(Counter(instance.stratum for instance in self.instances))
 
 
 def single_suite(
@@ -110,7 +108,7 @@ def single_suite(
     """A suite of ``episodes`` consecutive seeds in one environment, for the command line."""
     if episodes < 1:
         raise SuiteError(f"episodes is {episodes}; at least 1 is needed")
-    difficulty = _difficulty(difficulty, scenario)
+    difficulty = chosen_difficulty(difficulty, scenario)
     name = "/".join(part for part in (environment, difficulty, scenario) if part)
     instances = tuple(
         Instance(environment, seed, difficulty, scenario)
@@ -119,61 +117,8 @@ def single_suite(
     return Suite(f"{name}/{first_seed}+{episodes}", instances)
 
 
-def _parse(data: dict[str, Any]) -> Suite:
-    _known_keys("suite", data, _SUITE_KEYS)
-    if data.get("schema") != SCHEMA:
-        raise SuiteError(f"schema is {data.get('schema')!r}; this version reads {SCHEMA}")
-    if not isinstance(data.get("name"), str) or not data["name"]:
-        raise SuiteError("name is missing; a suite has a name")
-    instances: list[Instance] = []
-    for index, group in enumerate(data.get("instances", [])):
-        where = f"instances[{index}]"
-        _known_keys(where, group, _GROUP_KEYS)
-        if not isinstance(group.get("environment"), str):
-            raise SuiteError(f"{where}: environment is missing; it is a Gymnasium id")
-        scenario = str(group.get("scenario", ""))
-        difficulty = _difficulty(group.get("difficulty"), scenario)
-        instances += [
-            Instance(group["environment"], seed, difficulty, scenario)
-            for seed in _seeds(where, group.get("seeds"))
-        ]
-    if not instances:
-        raise SuiteError("there are no [[instances]]; at least one is needed")
-    if len(set(instances)) < len(instances):
-        raise SuiteError("an instance is listed twice; each counts once")
-    return Suite(
-        data["name"],
-        tuple(instances),
-        str(data.get("description", "")),
-        tuple(str(policy) for policy in data.get("policies", [])),
-    )
-
-
-def _difficulty(given: str | None, scenario: str) -> str:
+def chosen_difficulty(given: str | None, scenario: str) -> str:
     """A scenario is one world, drawn at no difficulty; anything else is normal unless said."""
     if given and scenario:
         raise SuiteError(f'give a difficulty ("{given}") or a scenario ("{scenario}"), not both')
     return given or ("" if scenario else DEFAULT_DIFFICULTY)
-
-
-def _seeds(where: str, value: Any) -> list[int]:
-    """``[3, 4, 5]`` or ``{first = 3, count = 3}``."""
-    if isinstance(value, dict):
-        _known_keys(f"{where}.seeds", value, {"first", "count"})
-        first, count = value.get("first", 0), value.get("count")
-        if isinstance(first, int) and isinstance(count, int) and first >= 0 and count >= 1:
-            return list(range(first, first + count))
-    elif isinstance(value, list) and value and all(type(one) is int and one >= 0 for one in value):
-        return value
-    raise SuiteError(
-        f"{where}: seeds is {value!r}; it is a list of whole numbers >= 0, "
-        "or {first = 0, count = 10}"
-    )
-
-
-def _known_keys(where: str, table: Any, known: set[str]) -> None:
-    if not isinstance(table, dict):
-        raise SuiteError(f"{where} is {table!r}; a table is needed")
-    for key in table:
-        if key not in known:
-            raise SuiteError(f"{where}: {unknown('key', key, known)}")

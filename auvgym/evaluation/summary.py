@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from auvgym.evaluation.result import EpisodeResult
+from auvgym.evaluation.suite import Stratum
 
-Stratum = tuple[str, str, str]  # environment, difficulty, scenario
 Entrant = tuple[str, int, str]  # policy, its seed, its parameters
 WILSON_Z = 1.959963984540054  # two-sided 95 %
 
@@ -20,8 +20,8 @@ class PolicySummary:
 
     ``gap`` is the mean over the episodes that have one.
 
-    ``time_s``, ``energy_j``, ``cost`` and ``min_clearance_m`` are means over the episodes it
-    solved (None if it solved none) and flatter a policy that fails on the long ones;
+    ``time_s``, ``energy_j``, ``path_length_m``, ``cost`` and ``min_clearance_m`` are means over the
+    episodes it solved (None if it solved none) and flatter a policy that fails on the long ones;
     ``time_or_limit_s`` counts each failure as the time limit. ``evaluations``, ``replans`` and
     ``planning_seconds`` are means over all episodes. ``success_low`` and ``success_high`` bound
     the success rate (Wilson, 95 %).
@@ -30,6 +30,7 @@ class PolicySummary:
     environment: str
     difficulty: str
     scenario: str
+    settings: str
     policy: str
     policy_seed: int
     parameters: str
@@ -45,6 +46,7 @@ class PolicySummary:
     time_s: float | None
     time_or_limit_s: float
     energy_j: float | None
+    path_length_m: float | None
     cost: float | None
     min_clearance_m: float | None
     evaluations: float
@@ -54,8 +56,13 @@ class PolicySummary:
 
     @property
     def stratum(self) -> Stratum:
-        """What is ranked together: environment, difficulty, scenario."""
-        return self.environment, self.difficulty, self.scenario
+        """What is ranked together: environment, difficulty, scenario, settings."""
+        return self.environment, self.difficulty, self.scenario, self.settings
+
+    @property
+    def entrant(self) -> Entrant:
+        """Policy, seed, parameters."""
+        return self.policy, self.policy_seed, self.parameters
 
 
 def summarise(results: Iterable[EpisodeResult]) -> list[PolicySummary]:
@@ -96,6 +103,7 @@ def _summary(rank: int, episodes: Sequence[EpisodeResult]) -> PolicySummary:
         environment=first.environment,
         difficulty=first.difficulty,
         scenario=first.scenario,
+        settings=first.settings,
         policy=first.policy,
         policy_seed=first.policy_seed,
         parameters=first.parameters,
@@ -103,7 +111,7 @@ def _summary(rank: int, episodes: Sequence[EpisodeResult]) -> PolicySummary:
         rank=rank,
         episodes=len(episodes),
         solved=len(solved),
-        errors=sum(episode.outcome == "error" for episode in episodes),
+        errors=sum(episode.policy_failed for episode in episodes),
         success_low=low,
         success_high=high,
         score=_mean_score(episodes),
@@ -113,6 +121,7 @@ def _summary(rank: int, episodes: Sequence[EpisodeResult]) -> PolicySummary:
             episode.time_s if episode.success else episode.time_limit_s for episode in episodes
         ),
         energy_j=_mean(episode.energy_j for episode in solved),
+        path_length_m=_mean(episode.path_length_m for episode in solved),
         cost=_mean(episode.cost for episode in solved),
         min_clearance_m=_mean(episode.min_clearance_m for episode in solved),
         evaluations=fmean(episode.evaluations for episode in episodes),

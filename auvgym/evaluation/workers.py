@@ -6,7 +6,7 @@ import multiprocessing
 import signal
 from collections import deque
 from collections.abc import Callable, Generator, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any, Generic, TypeVar
@@ -14,10 +14,30 @@ from typing import Any, Generic, TypeVar
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 _ENDING_SECONDS = 0.5
+_READY = "ready"
+_NOT_STARTED = (
+    "a process to fly in could not start. Each imports the main script again: a script that flies "
+    'must do so under if __name__ == "__main__", and be a file'
+)
 
 
 class ProcessDiedError(Exception):
-    """The process that had a task in hand ended; its text says how."""
+    """The process that had a task in hand ended.
+
+    Attributes:
+        exit_code: the process's, negative for the signal that ended it; None if unknown.
+    """
+
+    def __init__(self, exit_code: int | None) -> None:
+        super().__init__(exit_code)  # what a pickle makes it of again
+        self.exit_code = exit_code
+
+    def __str__(self) -> str:
+        return f"the process ended with exit code {self.exit_code}"
+
+
+class StartError(RuntimeError):
+    """A process that could not even begin."""
 
 
 class _Worker(Generic[Task]):
@@ -34,6 +54,24 @@ class _Worker(Generic[Task]):
             self.process.start()
         theirs.close()
         self.task: Task | None = None
+        self._ready = False
+
+    def receive(self) -> Any:
+        """Read what the process says: ``_READY`` first, then answers.
+
+        Raises:
+            EOFError, OSError: the process is gone.
+            StartError: it never began.
+        """
+        try:
+            said = self.pipe.recv()
+        except (EOFError, OSError) as error:
+            if self._ready:
+                raise
+            self.end()
+            raise StartError(_NOT_STARTED) from error
+        self._ready = True
+        return said
 
     def give(self, task: Task) -> None:
         self.task = task
@@ -46,6 +84,34 @@ class _Worker(Generic[Task]):
             self.process.kill()
             self.process.join()
         self.pipe.close()
+
+
+class Lane(Generic[Task, Result]):
+    """One process that takes a task at a time, and is replaced where it dies.
+
+    Args:
+        function: as of :func:`run_tasks`.
+    """
+
+    def __init__(self, function: Callable[[Task], Result]) -> None:
+        self._function = function
+        self._worker: _Worker[Task] = _Worker(function)
+
+    def run(self, task: Task) -> Result | ProcessDiedError:
+        """``function(task)``, or how the process died of it."""
+        try:
+            self._worker.give(task)
+            while (said := self._worker.receive()) == _READY:
+                pass
+            return said  # type: ignore[no-any-return]
+        except (EOFError, OSError):
+            died = _how_it_died(self._worker)
+            self._worker = _Worker(self._function)
+            return died
+
+    def end(self) -> None:
+        """End the process."""
+        self._worker.end()
 
 
 def run_tasks(
@@ -71,7 +137,9 @@ def run_tasks(
                 assert task is not None
                 result: Result | ProcessDiedError
                 try:
-                    result = worker.pipe.recv()
+                    result = worker.receive()
+                    if result == _READY:
+                        continue
                 except (EOFError, OSError):
                     result = _how_it_died(worker)
                     pool.remove(worker)
@@ -88,21 +156,20 @@ def run_tasks(
 
 
 def _give(worker: _Worker[Task], task: Task) -> None:
-    """Hand over a task; a process that is gone already is noticed at the next read."""
-    try:
+    """Hand over a task; that a process is gone already is noticed at the next read."""
+    with suppress(OSError):
         worker.give(task)
-    except OSError:
-        worker.task = task
 
 
 def _how_it_died(worker: _Worker[Any]) -> ProcessDiedError:
     worker.end()
-    return ProcessDiedError(f"the process ended with exit code {worker.process.exitcode}")
+    return ProcessDiedError(worker.process.exitcode)
 
 
 def _serve(function: Callable[[Any], Any], pipe: Connection) -> None:
     """The life of a process: answer tasks until the other side is gone."""
     try:
+        pipe.send(_READY)
         while True:
             pipe.send(function(pipe.recv()))
     except (EOFError, BrokenPipeError):

@@ -1,21 +1,26 @@
 """Scripted policies: the floors and references of every board, and planners as policies.
 
 ``make(name, seed=0, **parameters)`` gives one, ``list_policies()`` the names. A policy of one's
-own is a class with ``reset(env)`` and ``act(observation, info)``, see :class:`Policy`.
+own is a class with ``reset(env)`` or ``reset(observation, info)``, and
+``act(observation, info)``, see :class:`Policy`.
 """
 
 from __future__ import annotations
 
-from auvgym.policies.base import Knows, Policy, PolicyError, ScriptedPolicy
+from auvgym.policies.agents import CodeWarning
+from auvgym.policies.base import Knows, Policy, PolicyError, ScriptedPolicy, begin
 from auvgym.policies.planner import PlannerPolicy
-from auvgym.policies.registry import list_policies, make
+from auvgym.policies.registry import frozen_parameters, list_policies, make
 
 __all__ = [
+    "CodeWarning",
     "Knows",
     "PlannerPolicy",
     "Policy",
     "PolicyError",
     "ScriptedPolicy",
+    "begin",
+    "frozen_parameters",
     "list_policies",
     "make",
 ]

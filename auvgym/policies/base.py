@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
@@ -32,6 +33,9 @@ class Policy(Protocol):
     position and the goal), ``"sensors"`` (the observation) or ``"map"`` (``env.unwrapped.world``,
     the present map; never the future).
 
+    ``reset`` may take ``(observation, info)`` instead of the environment: such a policy is never
+    given the environment, and knows what its observations tell.
+
     One object may fly many episodes: ``reset`` forgets the last one entirely, so that an episode
     depends on the policy's parameters, its seed and the episode alone, whatever was flown before.
 
@@ -57,6 +61,22 @@ class Policy(Protocol):
     def act(self, observation: Observation, info: dict[str, Any]) -> Any:
         """The next action, for the observation and info that the last reset or step gave."""
         ...
+
+
+def begin(policy: Any, env: Any, observation: Observation, info: dict[str, Any]) -> None:
+    """Call a policy's ``reset`` with what it takes: ``(env)``, or ``(observation, info)``."""
+    if takes_observation(policy):
+        policy.reset(observation, info)
+    else:
+        policy.reset(env)
+
+
+def takes_observation(policy: Any) -> bool:
+    """Whether ``reset`` takes ``(observation, info)`` and not the environment."""
+    parameters = inspect.signature(policy.reset).parameters.values()
+    plain = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    needed = [one for one in parameters if one.kind in plain and one.default is one.empty]
+    return len(needed) > 1
 
 
 class ScriptedPolicy(ABC):

@@ -6,12 +6,13 @@ import importlib
 import inspect
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import auvgym
 from auvgym import ompl
 from auvgym._names import unknown
+from auvgym.policies.agents import AGENTS, file_hash
 from auvgym.policies.astar_replan import AstarReplanPolicy
 from auvgym.policies.base import Policy, PolicyError, ScriptedPolicy
 from auvgym.policies.hold import HoldPolicy
@@ -46,7 +47,9 @@ def make(name: str, seed: int = 0, **parameters: Any) -> Policy:
     """Make a policy.
 
     Args:
-        name: one of :func:`list_policies`, or ``"module:Class"`` for a class of one's own.
+        name: one of :func:`list_policies`, ``"module:Class"`` for a class of one's own, or the
+            path of a trained agent: ``"agent.onnx"`` with its card, or a Stable-Baselines3
+            ``"agent.zip"`` (reading one runs code from it).
         seed: seed of whatever the policy draws.
         **parameters: the policy's own, as its class documents them; a planner's policy takes
             ``window`` and the planner's parameters.
@@ -55,13 +58,36 @@ def make(name: str, seed: int = 0, **parameters: Any) -> Policy:
         PolicyError: no policy of that name, or a parameter that it does not have.
     """
     if name in SCRIPTED:
-        _check_parameters(name, SCRIPTED[name], parameters)
+        _check_parameters(name, SCRIPTED[name], parameters, ("seed",))
         return SCRIPTED[name](seed=seed, **parameters)
     if name in auvgym.list_planners() or name in ompl.PLANNERS:
         return PlannerPolicy(planner=name, seed=seed, **parameters)
+    for ending, agent in AGENTS.items():
+        if name.endswith(ending):
+            _check_parameters(name, agent, parameters, ("seed", "path"))
+            made: Any = agent(name, seed=seed, **parameters)
+            return made  # type: ignore[no-any-return]
     if ":" in name:
         return _make_foreign(name, seed, parameters)
     raise PolicyError(unknown("policy", name, list_policies()))
+
+
+def is_shipped(name: str) -> bool:
+    """Whether a policy is auvgym's own code, which needs no guard."""
+    return name in SCRIPTED or name in auvgym.list_planners() or name in ompl.PLANNERS
+
+
+def frozen_parameters(name: str, parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """The parameters as results keep them: an agent's with the hash of its file.
+
+    Two files of one name are two policies, and :func:`make` refuses a file of another hash.
+
+    Raises:
+        PolicyError: the agent's file cannot be read.
+    """
+    if not name.endswith(tuple(AGENTS)):
+        return dict(parameters)
+    return {"sha256": file_hash(name), **parameters}
 
 
 def _make_foreign(name: str, seed: int, parameters: dict[str, Any]) -> Policy:
@@ -79,23 +105,25 @@ def _make_foreign(name: str, seed: int, parameters: dict[str, Any]) -> Policy:
     maker = getattr(module, class_name, None)
     if not callable(maker):
         raise PolicyError(f'policy "{name}": module "{module_name}" has no class "{class_name}"')
-    _check_parameters(name, maker, parameters)
+    _check_parameters(name, maker, parameters, ("seed",))
     accepted = inspect.signature(maker).parameters
     policy = maker(**({"seed": seed} if "seed" in accepted else {}), **parameters)
     for method in ("reset", "act"):
         if not callable(getattr(policy, method, None)):
             raise PolicyError(
-                f'policy "{name}" has no method "{method}"; a policy has reset(env) and '
-                "act(observation, info)"
+                f'policy "{name}" has no method "{method}"; a policy has reset(env) or '
+                "reset(observation, info), and act(observation, info)"
             )
     return policy  # type: ignore[no-any-return]
 
 
-def _check_parameters(name: str, maker: Callable[..., Any], parameters: dict[str, Any]) -> None:
+def _check_parameters(
+    name: str, maker: Callable[..., Any], parameters: dict[str, Any], own: tuple[str, ...]
+) -> None:
     accepted = inspect.signature(maker).parameters
     if any(one.kind is inspect.Parameter.VAR_KEYWORD for one in accepted.values()):
         return
-    known = [key for key in accepted if key != "seed"]
+    known = [key for key in accepted if key not in own]
     for key in parameters:
         if key not in known:
             raise PolicyError(f'policy "{name}": {unknown("parameter", key, known)}')

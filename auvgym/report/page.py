@@ -81,17 +81,17 @@ def figure_page(figure: Any, title: str) -> str:
 
 
 def _document(title: str, body: str, figures: Mapping[str, Any]) -> str:
-    scripts = [f"<script>{_resource('page.js')}</script>"]
+    scripts = [f"<script>{resource('page.js')}</script>"]
     if figures:
         body = f"{body}\n{_viewer(list(figures))}"
         plotly_js = require("plotly.offline", "report").get_plotlyjs()
         data = [
-            f'<script type="application/json" id="figure-{index}">{_json(figure)}</script>'
+            f'<script type="application/json" id="figure-{index}">{figure_json(figure)}</script>'
             for index, figure in enumerate(figures.values())
         ]
         scripts = [f"<script>{plotly_js}</script>", *data, *scripts]
     return _PAGE.format(
-        title=escape(title), style=_resource("page.css"), body=body, scripts="\n".join(scripts)
+        title=escape(title), style=resource("page.css"), body=body, scripts="\n".join(scripts)
     )
 
 
@@ -107,7 +107,7 @@ def _viewer(labels: Sequence[str]) -> str:
     return f'<section class="viewer">{choice}<div id="figure"></div></section>'
 
 
-def _json(figure: Any) -> str:
+def figure_json(figure: Any) -> str:
     """A figure's data, safe inside a script element."""
     shown = json.loads(figure.to_json())
     # Templates only repeat plotly's defaults, 7 kB a figure.
@@ -115,5 +115,6 @@ def _json(figure: Any) -> str:
     return json.dumps(shown, separators=(",", ":")).replace("<", "\\u003c")
 
 
-def _resource(name: str) -> str:
+def resource(name: str) -> str:
+    """A style or script that lies beside this file."""
     return files("auvgym.report").joinpath(name).read_text(encoding="utf-8")

@@ -7,6 +7,7 @@ from typing import Any, Protocol
 
 from auvgym.rendering.subjects import Points, World
 from auvgym.report import theme
+from auvgym.report.chart import Chart, chart_traces
 from auvgym.report.scene import scene_of
 
 
@@ -34,7 +35,9 @@ class Plan(Protocol):
         """Who made it."""
 
 
-def plan_figure(world: World, plan: Plan) -> Any:
+def plan_figure(
+    world: World, plan: Plan, chart: Chart | None = None, corners: Points | None = None
+) -> Any:
     """An interactive figure of a plan: map, obstacles, current and the way.
 
     Worlds in three dimensions are shown in space (depth downwards, stretched where the world is
@@ -43,6 +46,8 @@ def plan_figure(world: World, plan: Plan) -> Any:
     Args:
         world: the plan was made in, at the time it was made.
         plan: from :func:`auvgym.plan`.
+        chart: from :func:`auvgym.maklink`, to be drawn below the plan of a harbour.
+        corners: the path before it was smoothed, (n, 3) m, to be drawn beside it.
 
     Returns:
         A ``plotly.graph_objects.Figure``; :func:`auvgym.report.figure_page` makes a page of it.
@@ -57,7 +62,9 @@ def plan_figure(world: World, plan: Plan) -> Any:
     traces = [
         *scene.flow(world, depth_m, scene.fastest_mps([world], depth_m)),
         *scene.ground(),
+        *(chart_traces(scene, chart) if chart is not None else []),
         scene.obstacles(world.snapshot()["obstacles"]),
+        *([scene.way(corners, "before smoothing", theme.START)] if corners is not None else []),
         scene.way(plan.waypoints, name, theme.PLAN, None if plan.feasible else "dash"),
         *scene.ends(),
     ]

@@ -6,9 +6,18 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from html import escape
-from typing import Any
+from typing import Any, NamedTuple
 
 Row = Mapping[str, Any]
+
+
+class Shown(NamedTuple):
+    """A cell that shows a text and sorts by a number (NaN: last) or by another text."""
+
+    text: str
+    order: float | str
+
+
 _SHARE = re.compile(r"\s*(\d+(?:\.\d+)?)\s*/\s*(\d+(?:\.\d+)?)\s*")
 _UNITS = {"_mps": "m/s", "_m": "m", "_km": "km", "_s": "s", "_h": "h", "_j": "J", "_kj": "kJ"}
 
@@ -49,6 +58,8 @@ def sort_value(value: Any) -> float | str:
     """What a cell sorts by: a number, the share of an ``"n/N"`` text, NaN for nothing, or text."""
     if value is None:
         return math.nan
+    if isinstance(value, Shown):
+        return value.order
     if isinstance(value, str):
         share = _SHARE.fullmatch(value)
         if share is None:
@@ -97,6 +108,9 @@ def _table(environment: str, rows: Sequence[Row], headings: dict[str, str], rank
 
 def _cell(value: Any) -> str:
     order = sort_value(value)
+    if isinstance(value, Shown):
+        kind = "" if isinstance(order, str) else ' class="number"'
+        return f'<td{kind} data-value="{escape(str(order))}">{escape(value.text)}</td>'
     if isinstance(order, str):
         return f'<td data-value="{escape(order)}">{escape(order)}</td>'
     if isinstance(value, str):  # n/N, with a bar of the share behind it

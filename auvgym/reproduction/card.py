@@ -17,8 +17,8 @@ else:
     import tomli as tomllib  # type: ignore[import-not-found,unused-ignore]
 
 #: What a card shows: costs or seconds case by case, curves over evaluations, costs over parameters,
-#: or whatever was measured, case by case.
-View = Literal["costs", "seconds", "curves", "sweeps", "measures"]
+#: or whatever was measured, case by case, or how what was measured is distributed.
+View = Literal["costs", "seconds", "curves", "sweeps", "measures", "distributions"]
 PictureKind = Literal["paths", "flights", "distances", "dots", "boxes", "progress"]
 #: Colours that differ for colour-blind readers, too (Okabe and Ito 2008).
 COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#7a6a00", "#000000")
@@ -56,7 +56,7 @@ class Case:
         mission: its start/goal pair.
         mean, deviation, seconds, sign: the paper's costs, times and verdicts.
         parameters: what all columns of this row have in common.
-        paper: for the view "measures", measure -> the paper's figures; "" where it has none.
+        paper: for these views, measure -> the paper's figures; "" where it has none.
     """
 
     label: str
@@ -127,7 +127,7 @@ class Card:
         columns: planners.
         cases: rows.
         sweeps: for the view "sweeps".
-        measures: for the view "measures", those that are shown.
+        measures: for the views "measures" and "distributions", those that are shown.
         pictures: for the view "measures", what is drawn instead of bars.
         seeds: of each cell, as the paper has them; 1 where nothing is random.
         why: where and why we and the paper differ, in words (Markdown).

@@ -24,6 +24,15 @@ MEASURES = {
     "turn_deg": "Sharpest turn (degrees)",
     "reached": "Share that arrived",
     "evaluations": "Evaluations",
+    "length_m": "Length (m)",
+    "gap_percent": "Length above the exact optimum (%)",
+    "iteration": "First iteration within 1 % of its own end",
+    "evaluations_1": "Evaluations until within 1 % of the exact optimum; all if never",
+    "fitness": "F, as the planner minimises it",
+    "time_loss_percent": "Travel time above the fastest (%)",
+    "inside_m": "Way inside danger zones (m)",
+    "clearance_m": "Least clearance to polygons (m); negative inside",
+    "free": "Share of free paths",
     "step_us": "Time of a step (microseconds, median)",
 }
 #: Paths are looked at this often, m.

@@ -8,6 +8,7 @@ from statistics import fmean, stdev
 import auvgym
 from auvgym.reproduction.card import Card, Case, Column, swept
 from auvgym.reproduction.cells import Cell, cells, sign
+from auvgym.reproduction.distributions import distributions
 from auvgym.reproduction.measures import MEASURES
 from auvgym.reproduction.runs import CURVE_POINTS, Outcome, Run, checkpoints
 
@@ -190,4 +191,10 @@ def _table(rows: Table) -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-_VIEWS = {"costs": _costs, "seconds": _seconds, "curves": _curves, "measures": _measures}
+_VIEWS = {
+    "costs": _costs,
+    "seconds": _seconds,
+    "curves": _curves,
+    "measures": _measures,
+    "distributions": distributions,
+}

@@ -12,6 +12,7 @@ import numpy as np
 from auvgym._extras import require
 from auvgym.reproduction.card import COLOURS, Card, Picture, swept
 from auvgym.reproduction.cells import Cell, cells
+from auvgym.reproduction.harbor_maps import draw_maps
 from auvgym.reproduction.measures import MEASURES
 from auvgym.reproduction.runs import Outcome, Run, checkpoints
 from auvgym.reproduction.scenes import SCENES
@@ -39,12 +40,17 @@ def draw(card: Card, outcomes: Mapping[Run, Outcome], seeds: int, folder: Path) 
         figure = _sweeps(figures, card, outcomes, seeds)
     elif card.pictures:
         return [_picture(figures, card, one, outcomes, seeds, folder) for one in card.pictures]
+    elif card.view == "distributions":
+        figure = _distributions(figures, card, cells(card, card.columns, outcomes, seeds))
     elif card.view == "measures":
         figure = _measures(figures, card, cells(card, card.columns, outcomes, seeds))
     else:
         panel = {"costs": _boxes, "seconds": _bars, "curves": _lines}[card.view]
         figure = _panels(figures, card, cells(card, card.columns, outcomes, seeds), panel)
-    return [_save(figure, folder, card.name)]
+    names = [_save(figure, folder, card.name)]
+    if card.protocol == "harbor":
+        names.append(_save(draw_maps(figures, card, COLOURS), folder, f"{card.name}-maps"))
+    return names
 
 
 def _save(figure: Any, folder: Path, name: str) -> str:
@@ -115,6 +121,31 @@ def _measures(figures: Any, card: Card, rows: list[list[Cell]]) -> Any:
         axis.grid(axis="y", alpha=0.3)
     axes[0].legend(fontsize=7, frameon=False, ncols=2)
     figure.suptitle(card.title, fontsize=11)
+    return figure
+
+
+def _distributions(figures: Any, card: Card, rows: list[list[Cell]]) -> Any:
+    """A row of panels for each measure, a panel for each case: every seed as a point."""
+    down, abreast = len(card.measures), len(rows)
+    figure = figures.Figure(figsize=(3.6 * abreast, 2.9 * down), layout="constrained")
+    axes = figure.subplots(down, abreast, squeeze=False)
+    for measure, line in zip(card.measures, axes, strict=True):
+        for axis, row in zip(line, rows, strict=True):
+            places = np.arange(len(row))
+            for place, cell in zip(places, row, strict=True):
+                values = np.array(cell.measured(measure))
+                spread = np.linspace(-0.25, 0.25, len(values))
+                colour = COLOURS[place % len(COLOURS)]
+                axis.plot(place + spread, values, ".", ms=3, color=colour, alpha=0.6)
+                axis.plot([place - 0.3, place + 0.3], [np.median(values)] * 2, color="black", lw=1)
+            paper = row[0].case.paper.get(measure, [""] * len(row))
+            known = [i for i, figure in enumerate(paper) if not isinstance(figure, str)]
+            axis.plot(known, [paper[i] for i in known], "D", mfc="none", color="black", ms=6)
+            axis.set_title(f"{row[0].case.label}: {MEASURES[measure]}", fontsize=8)
+            axis.tick_params(labelsize=8)
+            axis.grid(axis="y", alpha=0.3)
+            _name_columns(axis, row, places)
+    figure.suptitle(f"{card.title}. Line: median of our seeds; diamond: paper", fontsize=11)
     return figure
 
 

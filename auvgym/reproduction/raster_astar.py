@@ -23,6 +23,7 @@ def raster_astar(
     world: auvgym.World,
     nodes: int = 100,
     heuristic: str = "manhattan",
+    cells: bool = False,
     connectivity: int = 8,
     corner_cutting: bool = True,
 ) -> Array:
@@ -32,6 +33,7 @@ def raster_astar(
         world: the world.
         nodes: along each side of the box, 2 .. 2000.
         heuristic: "manhattan", which overestimates where diagonals are allowed, or "octile".
+        cells: whether nodes are the middles of cells instead of points from wall to wall.
         connectivity: 4 or 8 neighbours.
         corner_cutting: whether a diagonal may pass between two nodes of which one is not free.
 
@@ -49,6 +51,8 @@ def raster_astar(
     if connectivity not in _CONNECTED:
         raise auvgym.PlanningError(f"connectivity = {connectivity}: must be 4 or 8")
     low, high = world.domain
+    inset = (high - low) / (2 * nodes) if cells else np.zeros(3)
+    low, high = low + inset, high - inset
     xs, ys = (np.linspace(low[axis], high[axis], nodes) for axis in (0, 1))
     points = np.array([[x, y, world.start[2]] for x in xs for y in ys])
     free = (world.clearance(points) > 0.0).reshape(nodes, nodes)

@@ -11,13 +11,14 @@ from typing import Any, Literal
 import numpy as np
 
 import auvgym
+from auvgym.reproduction.harbors import plan_in_harbor
 from auvgym.reproduction.measures import of_path
 from auvgym.reproduction.raster_astar import raster_astar
 from auvgym.reproduction.threats import fly_among_threats
 
 #: Points of a convergence curve: evenly spaced in the logarithm of the evaluations.
 CURVE_POINTS = 24
-Protocol = Literal["plan", "phases", "path", "threats"]
+Protocol = Literal["plan", "phases", "path", "threats", "harbor"]
 
 
 @dataclass(frozen=True)
@@ -26,10 +27,12 @@ class Run:
 
     Attributes:
         protocol: "plan" plans once; "phases" is LFHH's experiment, see :func:`auvgym.run_phases`;
-            "path" plans once and measures the path; "threats" flies among what moves.
+            "path" plans once and measures the path; "threats" flies among what moves; "harbor"
+            plans once and measures the path against the exact optimum of its harbour.
         scenario: a shipped scenario.
         mission: its start/goal pair.
-        planner: a planner's name; for "path" also "raster-astar", for "threats" "navigator".
+        planner: a planner's name; for "path" and "harbor" also "raster-astar", for "threats"
+            "navigator".
         parameters: the planner's, as a JSON object with sorted keys.
         window: sections of the planning window, 0 for the whole rest of the path; for "phases".
         seed: of the planner's random streams.
@@ -55,7 +58,7 @@ class Outcome:
         seconds: processor time of the run on this machine, the only figure but the measure
             ``step_us`` that differs from run to run; other work on the machine hardly lengthens it.
         curve: for "plan" the best cost after :func:`checkpoints` evaluations.
-        measures: for "path" and "threats" what is measured, by name.
+        measures: for "path", "threats" and "harbor" what is measured, by name.
     """
 
     cost: float
@@ -142,9 +145,18 @@ def _threats(run: Run) -> Outcome:
     return Outcome(measures["length_km"], unharmed, 0, seconds, measures=measures)
 
 
+def _harbor(run: Run) -> Outcome:
+    world = auvgym.World(run.scenario, seed=run.seed, mission=run.mission)
+    began = time.process_time()
+    plan, measures = plan_in_harbor(world, run.planner, run.seed, json.loads(run.parameters))
+    seconds = time.process_time() - began
+    return Outcome(measures["length_m"], plan.feasible, plan.evaluations, seconds, (), measures)
+
+
 _PROTOCOLS: dict[str, Callable[[Run], Outcome]] = {
     "plan": _plan,
     "phases": _phases,
     "path": _path,
     "threats": _threats,
+    "harbor": _harbor,
 }

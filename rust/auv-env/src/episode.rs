@@ -46,6 +46,57 @@ impl Outcome {
     }
 }
 
+/// Whether an episode keeps where the vehicle was and what was ordered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Record {
+    /// Every tick and action, for pictures and replays.
+    Everything,
+    /// Nothing but the present: a few tens of kilobytes less.
+    Nothing,
+}
+
+/// What is measured of an episode, SI units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measures {
+    /// Time since the start (s).
+    pub time_s: f64,
+    /// Energy spent (J).
+    pub energy_j: f64,
+    /// Length of the path over ground (m).
+    pub path_length_m: f64,
+    /// Least clearance so far (m).
+    pub min_clearance_m: f64,
+    /// Distance to the goal (m).
+    pub distance_to_goal_m: f64,
+    /// Planner evaluations charged.
+    pub evaluations: u64,
+    /// Plans after the first.
+    pub replans: u64,
+    /// Map changes so far.
+    pub map_changes: usize,
+    /// Whether the last leg ended with one.
+    pub map_changed: bool,
+    /// How the episode stands.
+    pub outcome: Outcome,
+}
+
+impl Default for Measures {
+    fn default() -> Self {
+        Self {
+            time_s: 0.0,
+            energy_j: 0.0,
+            path_length_m: 0.0,
+            min_clearance_m: 0.0,
+            distance_to_goal_m: 0.0,
+            evaluations: 0,
+            replans: 0,
+            map_changes: 0,
+            map_changed: false,
+            outcome: Outcome::Running,
+        }
+    }
+}
+
 /// What an episode may spend.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
@@ -101,6 +152,7 @@ pub struct Episode {
     limits: Limits,
     helm: Helm,
     state: State,
+    record: Record,
     beams: Vec<Vec3>,
     turned: Vec<Vec3>,
     ranges: Vec<f64>,
@@ -145,6 +197,16 @@ impl Episode {
         Self::assemble(world, state)
     }
 
+    /// The same, keeping what `record` says.
+    pub fn recording(world: World, record: Record) -> Self {
+        Self { record, ..Self::new(world) }
+    }
+
+    /// Keeps what `record` says from now on.
+    pub fn record(&mut self, record: Record) {
+        self.record = record;
+    }
+
     fn assemble(world: World, state: State) -> Self {
         let scenario = world.scenario();
         let (vehicle, mission) = (&scenario.vehicle, world.mission());
@@ -164,6 +226,7 @@ impl Episode {
             limits,
             helm,
             state,
+            record: Record::Everything,
             turned: beams.clone(),
             beams,
             ranges: vec![0.0; count],
@@ -184,6 +247,23 @@ impl Episode {
     /// How the episode stands.
     pub fn state(&self) -> &State {
         &self.state
+    }
+
+    /// What is measured now.
+    pub fn measures(&self) -> Measures {
+        let state = &self.state;
+        Measures {
+            time_s: state.time_s,
+            energy_j: state.energy_j,
+            path_length_m: state.path_length_m,
+            min_clearance_m: state.min_clearance_m,
+            distance_to_goal_m: self.distance_to_goal_m(),
+            evaluations: state.evaluations,
+            replans: state.replans,
+            map_changes: self.world.changes().len(),
+            map_changed: state.map_changed,
+            outcome: state.outcome,
+        }
     }
 
     /// The goal-aligned frame at the vehicle.
@@ -255,7 +335,9 @@ impl Episode {
     pub fn step(&mut self, action: &[f32]) -> Result<f64, EnvError> {
         self.check(action)?;
         let waypoint = self.waypoint_of(action);
-        self.state.actions.extend_from_slice(action);
+        if self.record == Record::Everything {
+            self.state.actions.extend_from_slice(action);
+        }
         self.state.waypoint = Some(waypoint);
         let (before, start_s) = (self.distance_to_goal_m(), self.state.time_s);
         self.fly(waypoint);
@@ -264,7 +346,11 @@ impl Episode {
         Ok(reward::leg(before, after, self.limits.distance_m, elapsed, self.limits.time_s, self.state.outcome))
     }
 
-    fn check(&self, action: &[f32]) -> Result<(), EnvError> {
+    /// Whether an action may be flown.
+    ///
+    /// # Errors
+    /// As [`Episode::step`].
+    pub fn check(&self, action: &[f32]) -> Result<(), EnvError> {
         if self.state.outcome != Outcome::Running {
             return Err(EnvError::Ended(self.state.outcome.name()));
         }
@@ -329,7 +415,9 @@ impl Episode {
         state.energy_j += self.world.scenario().vehicle.power_w(order.speed) * tick_s;
         state.path_length_m += travelled;
         state.since_change_m += travelled;
-        state.trail.push(position);
+        if self.record == Record::Everything {
+            state.trail.push(position);
+        }
         self.world.set_time(self.state.time_s);
         // No clearance shrinks faster than vehicle and obstacles approach each other: as long as it cannot
         // have become the least so far, it need not be measured.

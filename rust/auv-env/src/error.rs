@@ -19,7 +19,25 @@ pub enum EnvError {
     /// A saved episode that cannot be read.
     #[error("saved episode: {0}")]
     Saved(String),
+    /// The same of one environment of a batch.
+    #[error("environment {index}: {error}")]
+    Environment {
+        /// Which environment.
+        index: usize,
+        /// What is wrong.
+        error: Box<EnvError>,
+    },
+    /// Work on a batch that was stopped half way.
+    #[error("stopped: call reset() first")]
+    Stopped,
     /// A wrong scenario.
     #[error(transparent)]
     World(#[from] auv_world::WorldError),
+}
+
+impl EnvError {
+    /// The error as that of environment `index` of a batch.
+    pub fn of(self, index: usize) -> Self {
+        Self::Environment { index, error: Box::new(self) }
+    }
 }

@@ -3,6 +3,7 @@
 //!
 //! An [`episode::Episode`] is a pure function of its world and the actions so far.
 
+pub mod batch;
 pub mod episode;
 pub mod error;
 pub mod frame;
@@ -12,6 +13,7 @@ pub mod sonar;
 pub mod source;
 pub mod vehicle;
 
+pub use batch::{Autoreset, Batch};
 pub use episode::{Episode, Outcome};
 pub use error::EnvError;
 pub use source::Source;

@@ -16,6 +16,8 @@ pub enum Source {
         family: String,
         /// Its parameters.
         parameters: Box<Parameters>,
+        /// Dimensions of its worlds.
+        dimensions: u8,
     },
 }
 
@@ -33,8 +35,18 @@ impl Source {
     /// # Errors
     /// [`WorldError`] if the family or a parameter is not allowed.
     pub fn family(family: &str, parameters: Parameters) -> Result<Self, WorldError> {
-        generate(family, 0, &parameters)?.check()?;
-        Ok(Self::Family { family: family.into(), parameters: Box::new(parameters) })
+        let scenario = generate(family, 0, &parameters)?;
+        scenario.check()?;
+        let dimensions = scenario.dimensions;
+        Ok(Self::Family { family: family.into(), parameters: Box::new(parameters), dimensions })
+    }
+
+    /// Dimensions of its worlds.
+    pub fn dimensions(&self) -> u8 {
+        match self {
+            Self::Fixed(world) => world.scenario().dimensions,
+            Self::Family { dimensions, .. } => *dimensions,
+        }
     }
 
     /// The world of the episode with this seed.
@@ -44,7 +56,7 @@ impl Source {
     pub fn world(&self, seed: u64) -> Result<World, WorldError> {
         match self {
             Self::Fixed(world) => Ok(world.fresh(seed)),
-            Self::Family { family, parameters } => families::world(family, seed, parameters),
+            Self::Family { family, parameters, .. } => families::world(family, seed, parameters),
         }
     }
 

@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let (start, goal) = (flat(mission.start_m), flat(mission.goal_m));
         let routes = match Routes::new(&chart, start, goal).and_then(|routes| routes.shortest_few(8)) {
             Ok(routes) => routes,
-            Err(MapError::NoWay | MapError::InZone { .. }) => {
+            Err(MapError::NoWay { .. } | MapError::InZone { .. }) => {
                 no_way += 1;
                 continue;
             }

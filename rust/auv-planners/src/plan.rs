@@ -3,6 +3,7 @@
 use auv_world::math::Vec3;
 
 use crate::cost::CostTerms;
+use crate::maklink::HarborReport;
 
 /// A planner's answer. If it found no feasible path it says so and gives the best of the others.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,4 +24,6 @@ pub struct Plan {
     pub coefficients: Vec<(&'static str, f64)>,
     /// Whether the caller interrupted it.
     pub interrupted: bool,
+    /// What planners in harbours say of it.
+    pub harbor: Option<Box<HarborReport>>,
 }

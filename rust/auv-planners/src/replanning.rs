@@ -134,7 +134,8 @@ fn join(
     let waypoints = [window.waypoints.as_slice(), rest].concat();
     let cost = path_cost(request.world, &waypoints, common.cost, &common.cost_options)?;
     let history = vec![(evaluations, cost.total)];
-    Ok(Plan { waypoints, feasible: cost.feasible, cost, evaluations, history, ..window.clone() })
+    // A harbour's report is one of the window alone.
+    Ok(Plan { waypoints, feasible: cost.feasible, cost, evaluations, history, harbor: None, ..window.clone() })
 }
 
 /// Where along its path a vehicle is.

@@ -124,6 +124,7 @@ impl<'a> Search<'a> {
             history: self.history,
             coefficients: Vec::new(),
             interrupted: self.interrupted,
+            harbor: None,
         }
     }
 }

@@ -180,6 +180,8 @@ fn no_way_is_an_answer() {
         let found = ask(planner, &world, 0, "");
         assert!(!found.feasible, "{planner}");
         check(&world, &found, mission.start_m, mission.goal_m, Cost::Lfhh);
+        let report = found.harbor.unwrap();
+        assert_eq!((report.gap_m, report.barriers), (None, vec![5]));
     }
 }
 
@@ -255,8 +257,67 @@ fn wrong_parameters_are_named() {
         ("visibility", r#"{"zones": {"distance_m": -1}}"#, "zones.distance_m"),
         ("maklink-dijkstra", r#"{"zones": {"mitre_limit": 0.5}}"#, "zones.mitre_limit"),
         ("maklink-aco", r#"{"zones": {"sides": 2}}"#, "zones.sides"),
+        ("funnel", r#"{"cut_m": -1}"#, "cut_m"),
+        ("rmpso", r#"{"points": 0}"#, "points"),
+        ("rmpso", r#"{"reach_m": -1}"#, "reach_m"),
     ] {
         let text = try_ask(planner, &world, 0, parameters).unwrap_err().to_string();
         assert!(text.starts_with(name), "{text}");
     }
+}
+
+#[test]
+fn reports_say_gap_depth_and_progress() {
+    for (name, _, best) in KNOWN {
+        let world = world(name);
+        for planner in PLANNERS {
+            let found = ask(planner, &world, 1, "");
+            let report = found.harbor.as_ref().unwrap();
+            close(report.gap_m.unwrap(), found.cost.path_length_m - best);
+            assert_eq!((report.depth_m, report.corners.as_slice()), (0.0, found.waypoints.as_slice()));
+            assert!(report.trace.windows(2).all(|pair| pair[1].0 > pair[0].0 && pair[1].1 <= pair[0].1));
+            let generations = if SWARMS.contains(&planner) { 150 } else { 1 };
+            assert!(report.trace.len() >= generations && report.barriers.is_empty());
+            let smooth = ask(planner, &world, 1, r#"{"smoothing": "fillet", "cut_m": 0.3}"#);
+            let report = smooth.harbor.as_ref().unwrap();
+            assert!(smooth.feasible && report.depth_m <= 1e-6, "{planner} {name} {}", report.depth_m);
+            assert!(smooth.waypoints.len() > report.corners.len() && report.gap_m.unwrap() > 0.0);
+            let cut = ask(planner, &world, 1, r#"{"smoothing": "bezier"}"#);
+            let depth = cut.harbor.as_ref().unwrap().depth_m;
+            assert_eq!(cut.feasible, depth <= 1e-6, "{planner} {name} {depth}");
+            check(&world, &cut, world.mission().start_m, world.mission().goal_m, Cost::Lfhh);
+        }
+        assert!(ask("funnel", &world, 0, r#"{"smoothing": "bezier"}"#).harbor.unwrap().depth_m > 1.0);
+    }
+    let open = try_ask("astar", &world("harbor-a"), 0, "").unwrap();
+    assert!(open.harbor.is_none());
+}
+
+#[test]
+fn swarms_beside_the_line_cross_a_raster() {
+    let world = world("harbor-raster");
+    let reading = r#""places": "line", "reach_m": 16, "zones": {"distance_m": 0.01}"#;
+    for planner in ["maklink-pso", "rmpso"] {
+        for bounds in ["clamp", "penalty"] {
+            for unit in [r#""metres", "v_max": 3"#, r#""ratio", "v_max": 0.1"#] {
+                let parameters = format!(r#"{{{reading}, "bounds": "{bounds}", "unit": {unit}}}"#);
+                let found = ask(planner, &world, 1, &parameters);
+                check(&world, &found, world.mission().start_m, world.mission().goal_m, Cost::Lfhh);
+                assert!(found.feasible && found.evaluations == 80 * 151 && found.waypoints.len() == 10);
+                assert!(
+                    (46.55..50.53).contains(&found.cost.path_length_m),
+                    "{parameters} {}",
+                    found.cost.path_length_m
+                );
+                assert_eq!(found, ask(planner, &world, 1, &parameters));
+            }
+        }
+    }
+    // Without a gradient some never leave a blocked beginning.
+    let binary = |seed| {
+        let parameters = format!(r#"{{{reading}, "bounds": "clamp", "penalty": "binary"}}"#);
+        ask("rmpso", &world, seed, &parameters).feasible
+    };
+    let free = (0..20).filter(|&seed| binary(seed)).count();
+    assert!((5..20).contains(&free), "{free}");
 }

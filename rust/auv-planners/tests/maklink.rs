@@ -147,7 +147,8 @@ fn start_or_goal_in_a_zone_is_named() {
 fn a_wall_right_across_leaves_no_way() {
     for wall in [rectangle([90.0, -5.0], [10.0, 300.0]), rectangle([90.0, 1.0], [10.0, 198.0])] {
         let error = lengths(&vec![wall, rectangle([30.0, 30.0], [9.0, 9.0])], START, GOAL).unwrap_err();
-        assert_eq!(error, MapError::NoWay);
+        assert_eq!(error, MapError::NoWay { polygons: vec![0] });
+        assert_eq!(error.to_string(), "the danger zones of polygons [0] part the goal from the start");
     }
 }
 

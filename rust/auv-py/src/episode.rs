@@ -28,7 +28,7 @@ pub fn sonar_directions(py: Python<'_>, dimensions: u8) -> PyResult<Bound<'_, Py
 
 /// Makes episodes from seeds.
 #[pyclass(frozen, module = "auvgym._core")]
-pub struct Source(auv_env::Source);
+pub struct Source(pub auv_env::Source);
 
 #[pymethods]
 impl Source {
@@ -53,7 +53,7 @@ impl Source {
 /// One episode.
 #[pyclass(module = "auvgym._core")]
 #[derive(Clone)]
-pub struct Episode(auv_env::Episode);
+pub struct Episode(pub auv_env::Episode);
 
 impl Episode {
     fn see<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
@@ -86,19 +86,19 @@ impl Episode {
 
     /// Everything that is measured, in SI units.
     fn info<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let state = self.0.state();
+        let now = self.0.measures();
         let info = PyDict::new(py);
-        info.set_item("time_s", state.time_s)?;
-        info.set_item("energy_j", state.energy_j)?;
-        info.set_item("path_length_m", state.path_length_m)?;
-        info.set_item("min_clearance_m", state.min_clearance_m)?;
-        info.set_item("distance_to_goal_m", self.0.distance_to_goal_m())?;
-        info.set_item("evaluations", state.evaluations)?;
-        info.set_item("replans", state.replans)?;
-        info.set_item("map_changes", self.0.world().changes().len())?;
-        info.set_item("map_changed", state.map_changed)?;
-        info.set_item("is_success", state.outcome == auv_env::Outcome::Goal)?;
-        info.set_item("outcome", state.outcome.name())?;
+        info.set_item("time_s", now.time_s)?;
+        info.set_item("energy_j", now.energy_j)?;
+        info.set_item("path_length_m", now.path_length_m)?;
+        info.set_item("min_clearance_m", now.min_clearance_m)?;
+        info.set_item("distance_to_goal_m", now.distance_to_goal_m)?;
+        info.set_item("evaluations", now.evaluations)?;
+        info.set_item("replans", now.replans)?;
+        info.set_item("map_changes", now.map_changes)?;
+        info.set_item("map_changed", now.map_changed)?;
+        info.set_item("is_success", now.outcome == auv_env::Outcome::Goal)?;
+        info.set_item("outcome", now.outcome.name())?;
         Ok(info)
     }
 

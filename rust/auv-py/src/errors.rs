@@ -36,10 +36,16 @@ pub fn world(error: WorldError) -> PyErr {
 }
 
 pub fn env(error: EnvError) -> PyErr {
-    match error {
-        EnvError::World(error) => world(error),
-        EnvError::Action { .. } => ActionError::new_err(error.to_string()),
-        EnvError::Ended(_) | EnvError::Saved(_) => PyValueError::new_err(error.to_string()),
+    let message = error.to_string();
+    let mut innermost = error;
+    while let EnvError::Environment { error, .. } = innermost {
+        innermost = *error;
+    }
+    match innermost {
+        EnvError::World(WorldError::Scenario { .. } | WorldError::Format { .. }) => ScenarioError::new_err(message),
+        EnvError::World(error @ WorldError::File { .. }) => world(error),
+        EnvError::Action { .. } => ActionError::new_err(message),
+        _ => PyValueError::new_err(message),
     }
 }
 

@@ -1,9 +1,11 @@
 //! `auvgym._core`: the engine as Python sees it. Bindings only; the Python package wraps them.
 
+mod batch;
 mod episode;
 mod errors;
 mod field;
 mod interrupt;
+mod maklink;
 mod navigator;
 mod planning;
 mod points;
@@ -17,11 +19,15 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     #[pymodule_export]
+    use crate::batch::{Batch, outcomes};
+    #[pymodule_export]
     use crate::episode::{Episode, Source, observation_layout, sonar_directions};
     #[pymodule_export]
     use crate::errors::{ActionError, PlanningError, ScenarioError};
     #[pymodule_export]
     use crate::field::TimeField;
+    #[pymodule_export]
+    use crate::maklink::maklink;
     #[pymodule_export]
     use crate::navigator::Navigator;
     #[pymodule_export]

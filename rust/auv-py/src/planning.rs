@@ -14,7 +14,7 @@ use crate::interrupt::Signals;
 use crate::points;
 use crate::world::World;
 
-/// (planner, waypoints, feasible, cost, evaluations, history, window, coefficients).
+/// (planner, waypoints, feasible, cost, evaluations, history, window, harbor, coefficients).
 type FoundPlan<'py> = (
     String,
     Bound<'py, PyArray2<f64>>,
@@ -23,8 +23,12 @@ type FoundPlan<'py> = (
     u64,
     Bound<'py, PyArray2<f64>>,
     Option<usize>,
+    Option<HarborReport<'py>>,
     Bound<'py, PyDict>,
 );
+
+/// (gap_m, depth_m, corners, trace, barriers).
+type HarborReport<'py> = (Option<f64>, f64, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>, Vec<usize>);
 
 /// Runs planning without the GIL; Ctrl-C stops it within a fraction of a second.
 fn run<T: Send>(py: Python<'_>, work: impl FnOnce(&Control<'_>) -> Result<T, PlanError> + Send) -> PyResult<T> {
@@ -48,16 +52,27 @@ fn terms<'py>(py: Python<'py>, cost: &CostTerms) -> PyResult<Bound<'py, PyDict>>
 }
 
 fn found(py: Python<'_>, plan: auv_planners::Plan, window: Option<usize>) -> PyResult<FoundPlan<'_>> {
-    let history: Vec<[f64; 2]> = plan.history.iter().map(|&(spent, best)| [spent as f64, best]).collect();
-    let rows = history.len();
-    let history = PyArray1::from_slice(py, history.as_flattened()).reshape([rows, 2])?;
+    let history = progress(py, &plan.history)?;
     let waypoints = points::table(py, &plan.waypoints)?;
+    let harbor = match plan.harbor {
+        Some(report) => {
+            let corners = points::table(py, &report.corners)?;
+            Some((report.gap_m, report.depth_m, corners, progress(py, &report.trace)?, report.barriers))
+        }
+        None => None,
+    };
     let coefficients = PyDict::new(py);
     for (name, value) in &plan.coefficients {
         coefficients.set_item(name, value)?;
     }
     let cost = terms(py, &plan.cost)?;
-    Ok((plan.planner, waypoints, plan.feasible, cost, plan.evaluations, history, window, coefficients))
+    Ok((plan.planner, waypoints, plan.feasible, cost, plan.evaluations, history, window, harbor, coefficients))
+}
+
+/// Best values against evaluations, (m, 2) float64.
+fn progress<'py>(py: Python<'py>, values: &[(u64, f64)]) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let rows: Vec<[f64; 2]> = values.iter().map(|&(spent, best)| [spent as f64, best]).collect();
+    PyArray1::from_slice(py, rows.as_flattened()).reshape([rows.len(), 2])
 }
 
 /// Names of the planners.

@@ -72,6 +72,7 @@ impl Held {
             history: self.history,
             coefficients: Vec::new(),
             interrupted,
+            harbor: None,
         })
     }
 }

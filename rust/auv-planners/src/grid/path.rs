@@ -101,6 +101,7 @@ fn plan(request: &Request<'_>, method: Method) -> Result<Plan, PlanError> {
         history: vec![(evaluations, cost.total)],
         coefficients: Vec::new(),
         interrupted: found.is_none(),
+        harbor: None,
     })
 }
 

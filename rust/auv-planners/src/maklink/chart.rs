@@ -96,6 +96,26 @@ impl Chart {
         (0..self.cells.len()).filter(|&cell| self.cells[cell].contains(point)).collect()
     }
 
+    /// The polygons of the zones between the water that can be reached from a point and what cannot: those that
+    /// part a goal from a start to which there is no way.
+    pub fn barriers(&self, start: Vec2) -> Vec<usize> {
+        let mut reached = vec![false; self.cells.len()];
+        let mut open = self.cells_at(start);
+        while let Some(cell) = open.pop() {
+            if !std::mem::replace(&mut reached[cell], true) {
+                open.extend(self.cells[cell].sides.iter().map(|&side| self.enters(side)));
+            }
+        }
+        let touches = |zone: &Zone, wanted: bool| {
+            let cells = self.cells.iter().zip(&reached).filter(|(_, reached)| **reached == wanted);
+            cells.flat_map(|(cell, _)| &cell.ring).any(|corner| zone.corners().contains(corner))
+        };
+        let between = self.zones.iter().filter(|zone| touches(zone, true) && touches(zone, false));
+        let mut polygons: Vec<usize> = between.flat_map(|zone| zone.polygons()).copied().collect();
+        polygons.sort_unstable();
+        polygons
+    }
+
     /// Whether a segment between points of the area enters no zone.
     #[inline]
     pub fn is_free(&self, from: Vec2, to: Vec2) -> bool {

@@ -48,8 +48,11 @@ pub enum MapError {
         polygons: Vec<usize>,
     },
     /// Danger zones part start and goal.
-    #[error("danger zones part the goal from the start")]
-    NoWay,
+    #[error("the danger zones of polygons {polygons:?} part the goal from the start")]
+    NoWay {
+        /// The polygons of the zones on the border of the water that can be reached.
+        polygons: Vec<usize>,
+    },
     /// Zones that lie so that links and cells cannot be told apart at a ten millionth of a metre.
     #[error("near {point:?} the danger zones lie too close for links: {reason}")]
     Degenerate {

@@ -5,6 +5,7 @@ use serde::Deserialize;
 
 use super::chart::Chart;
 use super::drift::Drift;
+use super::line::Line;
 use super::route::Route;
 
 /// Weights of eq. 8, 10 and 11: of the length, of a blocked path, of the current's term, of its angle and length.
@@ -38,6 +39,13 @@ struct Axis {
     high: f64,
 }
 
+impl Axis {
+    /// The place of a position (m).
+    fn at(&self, x: f64) -> Vec2 {
+        std::array::from_fn(|k| self.origin[k] + x * self.step[k])
+    }
+}
+
 /// A route whose waypoints are to be placed, one on each link.
 pub struct Corridor<'a> {
     chart: &'a Chart,
@@ -46,6 +54,8 @@ pub struct Corridor<'a> {
     goal: Vec2,
     objective: Objective,
     drift: Drift,
+    /// Only beside the straight line: there no link sees to it that legs are free.
+    line: Option<Line>,
 }
 
 impl<'a> Corridor<'a> {
@@ -65,7 +75,51 @@ impl<'a> Corridor<'a> {
             Axis { origin: a, step: [(b[0] - a[0]) / high, (b[1] - a[1]) / high], high }
         };
         let axes = route.crossings.iter().map(axis).collect();
-        Self { chart, axes, start: ends[0], goal: ends[1], objective, drift }
+        Self { chart, axes, start: ends[0], goal: ends[1], objective, drift, line: None }
+    }
+
+    /// So many places at equal distances along the straight line, each up to `reach` metres beside it. Positions
+    /// run from 0 on the right hand to twice the reach or, if `ratio`, to 1.
+    #[allow(clippy::too_many_arguments)]
+    pub fn beside(
+        chart: &'a Chart,
+        line: Line,
+        ends: [Vec2; 2],
+        points: usize,
+        reach: f64,
+        ratio: bool,
+        objective: Objective,
+        drift: Drift,
+    ) -> Self {
+        let [start, goal] = ends;
+        let way = [goal[0] - start[0], goal[1] - start[1]];
+        let length = (way[0] * way[0] + way[1] * way[1]).sqrt().max(f64::MIN_POSITIVE);
+        let left = [-way[1] / length, way[0] / length];
+        let (high, unit) = if ratio { (1.0, 2.0 * reach) } else { (2.0 * reach, 1.0) };
+        let axis = |point: usize| {
+            let part = (point + 1) as f64 / (points + 1) as f64;
+            let origin = std::array::from_fn(|k| start[k] + part * way[k] - reach * left[k]);
+            Axis { origin, step: left.map(|one| unit * one), high }
+        };
+        let axes = (0..points).map(axis).collect();
+        Self { chart, axes, start, goal, objective, drift, line: Some(line) }
+    }
+
+    /// Whether every path must be looked at: where no links lead it.
+    pub fn is_open(&self) -> bool {
+        self.line.is_some()
+    }
+
+    /// What the blocked legs of a path beside the straight line cost; `place` gives its positions.
+    pub fn penalty(&self, place: impl Fn(usize) -> f64) -> f64 {
+        let Some(line) = &self.line else { return 0.0 };
+        let inner = self.axes.iter().enumerate().map(|(point, axis)| axis.at(place(point)));
+        let (mut blocked, mut last) = (0, self.start);
+        for next in inner.chain([self.goal]) {
+            blocked += u32::from(line.blocks(last, next));
+            last = next;
+        }
+        line.cost(blocked)
     }
 
     /// Number of links.
@@ -81,7 +135,7 @@ impl<'a> Corridor<'a> {
     /// The path of some positions.
     pub fn path(&self, positions: impl Iterator<Item = f64>) -> Vec<Vec2> {
         let inner = self.axes.iter().zip(positions);
-        let inner = inner.map(|(axis, x)| std::array::from_fn(|k| axis.origin[k] + x * axis.step[k]));
+        let inner = inner.map(|(axis, x)| axis.at(x));
         let mut path: Vec<Vec2> = std::iter::once(self.start).chain(inner).chain([self.goal]).collect();
         path.dedup();
         path
@@ -89,6 +143,9 @@ impl<'a> Corridor<'a> {
 
     /// Whether a path leaves the area or enters a zone (eq. 7).
     pub fn is_blocked(&self, path: &[Vec2]) -> bool {
+        if let Some(line) = &self.line {
+            return path.windows(2).any(|leg| line.blocks(leg[0], leg[1]));
+        }
         let area = self.chart.area();
         !(path.iter().all(|p| area.contains(*p)) && path.windows(2).all(|leg| self.chart.is_free(leg[0], leg[1])))
     }

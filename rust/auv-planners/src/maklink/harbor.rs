@@ -12,6 +12,8 @@ use super::area::Area;
 use super::chart::Chart;
 use super::drift::Drift;
 use super::fitness::Objective;
+use super::line::{Line, Penalty};
+use super::zone::each;
 use crate::error::{PlanError, within};
 
 /// How danger zones are made.
@@ -45,11 +47,46 @@ impl ZoneSettings {
         within("zones.sides", self.sides, 3, 1000)
     }
 
+    /// The same, wider by so much (m).
+    #[must_use]
+    pub fn wider(&self, by_m: f64) -> Self {
+        Self { distance_m: self.distance_m + by_m, ..*self }
+    }
+
+    /// Start and goal where a path on the chart may begin and end: themselves, or the nearest points outside zones.
+    ///
+    /// # Errors
+    /// [`PlanError`] if one lies outside the area or in a zone, and is not to be joined to the nearest point outside.
+    pub fn ends(&self, chart: &Chart, mut ends: [Vec2; 2]) -> Result<[Vec2; 2], PlanError> {
+        for (name, end) in ["start", "goal"].into_iter().zip(&mut ends) {
+            if !self.snap {
+                chart.check(name, *end)?;
+            }
+            *end = chart.nearest_free(*end).unwrap_or(*end);
+        }
+        Ok(ends)
+    }
+
     /// The chart of a world as it is now.
     ///
     /// # Errors
     /// [`PlanError`] for what a chart cannot show: a third dimension, a sea floor, shapes that have no outline.
     pub fn chart(&self, world: &World) -> Result<Chart, PlanError> {
+        Ok(Chart::new(area(world)?, &self.polygons(world)?, self.distance_m, self.mitre_limit)?)
+    }
+
+    /// What blocks legs beside the straight line in a world as it is now.
+    ///
+    /// # Errors
+    /// As [`ZoneSettings::chart`].
+    pub fn line(&self, world: &World, penalty: Penalty) -> Result<Line, PlanError> {
+        let area = area(world)?;
+        let obstacles = each(&area, &self.polygons(world)?, self.distance_m, self.mitre_limit)?;
+        Ok(Line { area, obstacles, penalty })
+    }
+
+    /// Outlines of everything solid.
+    fn polygons(&self, world: &World) -> Result<Vec<Vec<Vec2>>, PlanError> {
         let scenario = world.scenario();
         let refuse =
             |what: &str| Err(PlanError::parameter("world", &scenario.name, format!("MAKLINK planners know no {what}")));
@@ -59,8 +96,7 @@ impl ZoneSettings {
         if scenario.seabed.is_some() {
             return refuse("sea floor, only polygons, discs and cylinders");
         }
-        let (low, high) = (scenario.domain.min_m, scenario.domain.max_m);
-        let level = low[2];
+        let level = scenario.domain.min_m[2];
         let mut polygons = Vec::with_capacity(scenario.obstacles.len());
         for (i, obstacle) in scenario.obstacles.iter().enumerate() {
             let [x, y, _] = world.obstacle_position(i);
@@ -79,9 +115,15 @@ impl ZoneSettings {
                 Obstacle::Superquadric(_) => return refuse("superquadrics, only polygons, discs and cylinders"),
             }
         }
-        let area = Area::new([low[0], low[1]], [high[0], high[1]])?;
-        Ok(Chart::new(area, &polygons, self.distance_m, self.mitre_limit)?)
+        Ok(polygons)
     }
+}
+
+/// The rectangle of a world.
+fn area(world: &World) -> Result<Area, PlanError> {
+    let domain = &world.scenario().domain;
+    let flat = |corner: [f64; 3]| [corner[0], corner[1]];
+    Ok(Area::new(flat(domain.min_m), flat(domain.max_m))?)
 }
 
 /// A regular polygon round a circle.

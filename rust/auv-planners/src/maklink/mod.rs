@@ -12,9 +12,12 @@ pub mod drift;
 pub mod error;
 pub mod fitness;
 pub mod funnel;
+pub mod graph;
 pub mod harbor;
+pub mod line;
 pub mod links;
 mod planners;
+pub mod report;
 pub mod route;
 mod search;
 pub mod settings;
@@ -29,3 +32,4 @@ pub use error::MapError;
 pub use planners::{
     plan_funnel, plan_maklink_aco, plan_maklink_dijkstra, plan_maklink_pso, plan_rmpso, plan_visibility,
 };
+pub use report::HarborReport;

@@ -4,9 +4,9 @@ use super::ants::Colony;
 use super::fitness::{Corridor, Objective};
 use super::funnel::taut;
 use super::harbor::drift;
-use super::route::length;
+use super::route::{distance, length};
 use super::search::Search;
-use super::settings::{Ants, Funnel, Particles, Plain, Unit};
+use super::settings::{Ants, Funnel, Particles, Places, Plain, Unit};
 use super::swarm::{Inertia, Swarm};
 use super::visibility::shortest;
 use crate::error::PlanError;
@@ -22,7 +22,7 @@ const ITERATIONS: u64 = 150;
 /// As [`crate::registry::plan`].
 pub fn plan_maklink_dijkstra(request: &Request<'_>) -> Result<Plan, PlanError> {
     let (common, settings) = request.parse::<Plain>()?;
-    let mut search = Search::new(request, &common, &settings.zones)?;
+    let mut search = Search::new(request, &common, &settings.zones, settings.smoothing())?;
     if let Some(routes) = search.routes(1)? {
         let [start, goal] = search.ends();
         let path = routes[0].by_middles(search.chart(), start, goal);
@@ -38,7 +38,7 @@ pub fn plan_maklink_dijkstra(request: &Request<'_>) -> Result<Plan, PlanError> {
 /// As [`crate::registry::plan`].
 pub fn plan_funnel(request: &Request<'_>) -> Result<Plan, PlanError> {
     let (common, settings) = request.parse::<Funnel>()?;
-    let mut search = Search::new(request, &common, &settings.zones)?;
+    let mut search = Search::new(request, &common, &settings.zones, settings.smoothing())?;
     let [start, goal] = search.ends();
     let mut best = f64::INFINITY;
     for route in search.routes(settings.corridors)?.unwrap_or_default() {
@@ -48,7 +48,7 @@ pub fn plan_funnel(request: &Request<'_>) -> Result<Plan, PlanError> {
             best = length(&path);
             search.hold(&path, best, true);
         }
-        if search.end_generation() {
+        if search.end_generation(best) {
             break;
         }
     }
@@ -61,7 +61,7 @@ pub fn plan_funnel(request: &Request<'_>) -> Result<Plan, PlanError> {
 /// As [`crate::registry::plan`].
 pub fn plan_visibility(request: &Request<'_>) -> Result<Plan, PlanError> {
     let (common, settings) = request.parse::<Plain>()?;
-    let mut search = Search::new(request, &common, &settings.zones)?;
+    let mut search = Search::new(request, &common, &settings.zones, settings.smoothing())?;
     let [start, goal] = search.ends();
     let control = search.control();
     match shortest(search.chart(), start, goal, &mut || control.interrupted()) {
@@ -94,11 +94,24 @@ pub fn plan_rmpso(request: &Request<'_>) -> Result<Plan, PlanError> {
 fn plan_swarm(request: &Request<'_>, inertia: Inertia) -> Result<Plan, PlanError> {
     let (common, settings) = request.parse::<Particles>()?;
     let drift = drift(request.world, settings.objective)?;
-    let mut search = Search::new(request, &common, &settings.zones)?;
-    let Some(routes) = search.routes(1)? else { return Ok(search.finish()) };
-    let (chart, size) = (search.chart().clone(), settings.population);
-    let ratio = settings.unit == Unit::Ratio;
-    let corridor = Corridor::new(&chart, &routes[0], search.ends(), ratio, settings.objective, drift);
+    let mut search = Search::new(request, &common, &settings.zones, settings.smoothing())?;
+    let (ratio, size) = (settings.unit == Unit::Ratio, settings.population);
+    let (chart, ends) = (search.chart().clone(), search.ends());
+    let corridor = match settings.places {
+        Places::Links => {
+            let Some(routes) = search.routes(1)? else { return Ok(search.finish()) };
+            Corridor::new(&chart, &routes[0], ends, ratio, settings.objective, drift)
+        }
+        Places::Line => {
+            if search.is_straight() {
+                return Ok(search.finish());
+            }
+            let line = settings.zones.wider(settings.smoothing().cut_m()).line(request.world, settings.penalty)?;
+            let third = distance(ends[0], ends[1]) / 3.0;
+            let reach = if settings.reach_m > 0.0 { settings.reach_m } else { third };
+            Corridor::beside(&chart, line, ends, settings.points, reach, ratio, settings.objective, drift)
+        }
+    };
     let generations = common.generations_or(ITERATIONS);
     // Without a number of generations the weight falls over the whole budget.
     let iterations = generations.min(common.max_evaluations.map_or(u64::MAX, |budget| budget / size as u64));
@@ -108,7 +121,7 @@ fn plan_swarm(request: &Request<'_>, inertia: Inertia) -> Result<Plan, PlanError
     search.count(counted);
     let mut held = hold(&mut search, &corridor, swarm.best(), swarm.best_cost());
     let mut generation = 0;
-    while !search.end_generation() && generation < generations {
+    while !search.end_generation(swarm.best_cost()) && generation < generations {
         let counted = search.left().min(size as u64);
         swarm.step(counted as usize, &mut random);
         search.count(counted);
@@ -130,7 +143,7 @@ fn plan_swarm(request: &Request<'_>, inertia: Inertia) -> Result<Plan, PlanError
 pub fn plan_maklink_aco(request: &Request<'_>) -> Result<Plan, PlanError> {
     let (common, settings) = request.parse::<Ants>()?;
     let drift = drift(request.world, Objective::Length)?;
-    let mut search = Search::new(request, &common, &settings.zones)?;
+    let mut search = Search::new(request, &common, &settings.zones, settings.smoothing())?;
     let Some(routes) = search.routes(1)? else { return Ok(search.finish()) };
     let chart = search.chart().clone();
     let corridor = Corridor::new(&chart, &routes[0], search.ends(), false, Objective::Length, drift);
@@ -144,7 +157,7 @@ pub fn plan_maklink_aco(request: &Request<'_>) -> Result<Plan, PlanError> {
         if search.is_worth_holding(colony.best_cost()) {
             held = hold(&mut search, &corridor, colony.best(), colony.best_cost());
         }
-        if search.end_generation() {
+        if search.end_generation(colony.best_cost()) {
             break;
         }
     }
@@ -156,6 +169,9 @@ pub fn plan_maklink_aco(request: &Request<'_>) -> Result<Plan, PlanError> {
 
 /// Holds the path of some positions; gives back what it costs the planner.
 fn hold(search: &mut Search<'_>, corridor: &Corridor<'_>, positions: &[f64], cost: f64) -> f64 {
-    search.hold(&corridor.path(positions.iter().copied()), cost, true);
+    let path = corridor.path(positions.iter().copied());
+    // Links lead free paths only.
+    let free = !corridor.is_open() || !corridor.is_blocked(&path);
+    search.hold(&path, cost, free);
     cost
 }

@@ -78,7 +78,7 @@ impl<'a> Routes<'a> {
     /// # Errors
     /// [`MapError::NoWay`] if there is none.
     pub fn shortest(&self) -> Result<Route, MapError> {
-        self.search(&[], &[], &[]).ok_or(MapError::NoWay)
+        self.search(&[], &[], &[]).ok_or_else(|| MapError::NoWay { polygons: self.chart.barriers(self.start) })
     }
 
     /// The shortest routes, at most so many, that enter no cell twice, shortest first.

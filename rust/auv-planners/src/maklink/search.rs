@@ -5,7 +5,10 @@ use auv_world::math::{Vec2, Vec3};
 use super::chart::Chart;
 use super::error::MapError;
 use super::harbor::ZoneSettings;
-use super::route::{Route, Routes, distance};
+use super::report::HarborReport;
+use super::route::{Route, Routes, distance, length};
+use super::smoothing::Smoothing;
+use super::visibility::shortest;
 use crate::control::Control;
 use crate::error::PlanError;
 use crate::fluid::{Held, Judge};
@@ -16,20 +19,29 @@ use crate::sections::check_place;
 
 /// A path replaces one in the history if it is shorter by this part.
 const WORTH_NOTING: f64 = 1e-3;
+/// A path no deeper than this in a zone keeps out of it (m).
+const OUTSIDE: f64 = 1e-6;
 
 /// A search on a chart.
 pub struct Search<'a> {
     request: &'a Request<'a>,
+    zones: ZoneSettings,
+    smoothing: Smoothing,
     chart: Chart,
     /// Start and goal, or the nearest points outside zones.
     ends: [Vec2; 2],
     level: f64,
     held: Held,
+    /// The path held, on the chart: as planned, and as smoothed.
+    corners: Vec<Vec2>,
+    smooth: Vec<Vec2>,
+    depth: f64,
     judge: Judge,
     limit: u64,
     stop: StopRule,
     target: f64,
     noted: f64,
+    trace: Vec<(u64, f64)>,
     interrupted: bool,
 }
 
@@ -38,29 +50,34 @@ impl<'a> Search<'a> {
     ///
     /// # Errors
     /// [`PlanError`] if the world cannot be charted, or start or goal is no place in it.
-    pub fn new(request: &'a Request<'a>, common: &Common, zones: &ZoneSettings) -> Result<Self, PlanError> {
+    pub fn new(
+        request: &'a Request<'a>,
+        common: &Common,
+        zones: &ZoneSettings,
+        smoothing: Smoothing,
+    ) -> Result<Self, PlanError> {
         check_place(request.world, "start", request.start)?;
         check_place(request.world, "goal", request.goal)?;
-        let chart = zones.chart(request.world)?;
+        let chart = zones.wider(smoothing.cut_m()).chart(request.world)?;
         let flat = |p: Vec3| [p[0], p[1]];
-        let mut ends = [flat(request.start), flat(request.goal)];
-        for (name, end) in ["start", "goal"].into_iter().zip(&mut ends) {
-            if !zones.snap {
-                chart.check(name, *end)?;
-            }
-            *end = chart.nearest_free(*end).unwrap_or(*end);
-        }
+        let ends = zones.ends(&chart, [flat(request.start), flat(request.goal)])?;
         Ok(Self {
             request,
+            zones: *zones,
+            smoothing,
             chart,
             ends,
             level: request.world.scenario().domain.min_m[2],
             held: Held::default(),
+            corners: Vec::new(),
+            smooth: Vec::new(),
+            depth: 0.0,
             judge: Judge::new(request.world, common.cost, &common.cost_options)?,
             limit: common.max_evaluations.unwrap_or(u64::MAX),
             stop: common.stop.unwrap_or(StopRule::Exhaust),
             target: common.target_cost.unwrap_or(f64::NEG_INFINITY),
             noted: f64::INFINITY,
+            trace: Vec::new(),
             interrupted: false,
         })
     }
@@ -85,22 +102,31 @@ impl<'a> Search<'a> {
         self.limit - self.held.evaluations()
     }
 
+    /// Whether start sees goal. Then the straight line, the answer, is held.
+    pub fn is_straight(&mut self) -> bool {
+        let [start, goal] = self.ends;
+        let free = self.chart.is_free(start, goal);
+        if free {
+            self.count(1);
+            self.hold(&[start, goal], distance(start, goal), true);
+        }
+        free
+    }
+
     /// The shortest routes, at most so many. `None` if the answer is already held: the straight line where start
     /// sees goal, or that there is no way.
     ///
     /// # Errors
     /// [`PlanError`] if zones fill the area.
     pub fn routes(&mut self, count: usize) -> Result<Option<Vec<Route>>, PlanError> {
-        let [start, goal] = self.ends;
-        if self.chart.is_free(start, goal) {
-            self.count(1);
-            self.hold(&[start, goal], distance(start, goal), true);
+        if self.is_straight() {
             return Ok(None);
         }
+        let [start, goal] = self.ends;
         let routes = Routes::new(&self.chart, start, goal).and_then(|routes| routes.shortest_few(count));
         match routes {
             Ok(routes) => Ok(Some(routes)),
-            Err(MapError::NoWay | MapError::InZone { .. }) => {
+            Err(MapError::NoWay { .. } | MapError::InZone { .. }) => {
                 self.no_way();
                 Ok(None)
             }
@@ -121,9 +147,12 @@ impl<'a> Search<'a> {
 
     /// Holds a better path from now on. `measure` is what is minimised.
     pub fn hold(&mut self, path: &[Vec2], measure: f64, free: bool) {
+        self.corners = path.to_vec();
+        let smooth = self.smoothing.apply(&self.chart, path);
+        (self.smooth, self.depth) = if free { (smooth.path, smooth.depth_m) } else { (path.to_vec(), 0.0) };
         // The last one is held anyway; in between, only progress is worth a verdict.
-        let waypoints = self.waypoints(path);
-        let clear = free && self.judge.is_clear(&waypoints);
+        let waypoints = self.waypoints(&self.smooth);
+        let clear = free && self.depth <= OUTSIDE && self.judge.is_clear(&waypoints);
         self.held.hold(&waypoints, self.judge.cost(&waypoints), clear);
         self.noted = measure;
     }
@@ -133,9 +162,10 @@ impl<'a> Search<'a> {
         measure < self.noted * (1.0 - WORTH_NOTING) || self.noted == f64::INFINITY
     }
 
-    /// Notes the total at the end of a generation, and whether the search is done.
-    pub fn end_generation(&mut self) -> bool {
+    /// Notes the total at the end of a generation and the best `measure` so far, and whether the search is done.
+    pub fn end_generation(&mut self, measure: f64) -> bool {
         self.held.note();
+        self.note(measure);
         self.interrupted = self.interrupted || self.control().interrupted();
         let enough = match self.stop {
             StopRule::FirstFeasible => self.held.is_clear(),
@@ -147,6 +177,13 @@ impl<'a> Search<'a> {
     /// Notes that the caller interrupted.
     pub fn interrupt(&mut self) {
         self.interrupted = true;
+    }
+
+    fn note(&mut self, measure: f64) {
+        let spent = self.held.evaluations();
+        if measure.is_finite() && self.trace.last().is_none_or(|last| last.0 < spent) {
+            self.trace.push((spent, measure));
+        }
     }
 
     /// From start to goal by way of a path on the chart.
@@ -161,15 +198,43 @@ impl<'a> Search<'a> {
         waypoints
     }
 
+    /// What the path held is longer than the shortest of all round the zones.
+    fn gap(&self) -> Option<f64> {
+        if self.interrupted || !self.noted.is_finite() {
+            return None;
+        }
+        let control = self.control();
+        let best = |chart: &Chart| shortest(chart, self.ends[0], self.ends[1], &mut || control.interrupted());
+        let best = if self.smoothing.cut_m() > 0.0 {
+            // Planned on zones that are wider than those that count.
+            best(&self.zones.chart(self.request.world).ok()?)
+        } else {
+            best(&self.chart)
+        };
+        Some(length(&self.smooth) - length(&best.ok()??))
+    }
+
     /// The plan.
     pub fn finish(mut self) -> Plan {
         if self.held.evaluations() == 0 {
             self.no_way();
         }
+        self.note(self.noted);
+        let report = HarborReport {
+            gap_m: self.gap(),
+            depth_m: self.depth,
+            corners: self.waypoints(&self.corners),
+            trace: std::mem::take(&mut self.trace),
+            barriers: if self.noted.is_finite() || self.interrupted {
+                Vec::new()
+            } else {
+                self.chart.barriers(self.ends[0])
+            },
+        };
         let ends = [self.request.start, self.request.goal];
         let cost = self.judge.cost(&ends);
         let interrupted = self.interrupted;
-        self.held.finish(self.request.planner, interrupted).unwrap_or_else(|| Plan {
+        let plan = self.held.finish(self.request.planner, interrupted).unwrap_or_else(|| Plan {
             planner: self.request.planner.to_owned(),
             waypoints: ends.to_vec(),
             feasible: false,
@@ -178,6 +243,8 @@ impl<'a> Search<'a> {
             history: Vec::new(),
             coefficients: Vec::new(),
             interrupted,
-        })
+            harbor: None,
+        });
+        Plan { harbor: Some(Box::new(report)), ..plan }
     }
 }

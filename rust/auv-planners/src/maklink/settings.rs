@@ -4,21 +4,44 @@ use serde::Deserialize;
 
 use super::fitness::Objective;
 use super::harbor::ZoneSettings;
+use super::line::Penalty;
+use super::smoothing::{Curve, Smoothing};
 use super::swarm::{Bounds, Inertia, Rules};
 use crate::error::{PlanError, within};
 use crate::parameters::Parameters;
 
+/// What a fillet may cut off unless told (m): a quarter and more of the safety distance.
+const CUT: f64 = 0.5;
+
 /// Parameters of `maklink-dijkstra` and `visibility`.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Plain {
     /// How danger zones are made.
     pub zones: ZoneSettings,
+    /// How the path is smoothed.
+    pub smoothing: Curve,
+    /// What a fillet may cut off at a corner (m).
+    pub cut_m: f64,
+}
+
+impl Default for Plain {
+    fn default() -> Self {
+        Self { zones: ZoneSettings::default(), smoothing: Curve::None, cut_m: CUT }
+    }
+}
+
+impl Plain {
+    /// How the path is smoothed.
+    pub fn smoothing(&self) -> Smoothing {
+        Smoothing::new(self.smoothing, self.cut_m)
+    }
 }
 
 impl Parameters for Plain {
     fn check(&self) -> Result<(), PlanError> {
-        self.zones.check()
+        self.zones.check()?;
+        within("cut_m", self.cut_m, 0.0, 1e9)
     }
 }
 
@@ -28,19 +51,31 @@ impl Parameters for Plain {
 pub struct Funnel {
     /// How danger zones are made.
     pub zones: ZoneSettings,
+    /// How the path is smoothed.
+    pub smoothing: Curve,
+    /// What a fillet may cut off at a corner (m).
+    pub cut_m: f64,
     /// The shortest path of so many corridors is taken.
     pub corridors: usize,
 }
 
 impl Default for Funnel {
     fn default() -> Self {
-        Self { zones: ZoneSettings::default(), corridors: 1 }
+        Self { zones: ZoneSettings::default(), smoothing: Curve::None, cut_m: CUT, corridors: 1 }
+    }
+}
+
+impl Funnel {
+    /// How the path is smoothed.
+    pub fn smoothing(&self) -> Smoothing {
+        Smoothing::new(self.smoothing, self.cut_m)
     }
 }
 
 impl Parameters for Funnel {
     fn check(&self) -> Result<(), PlanError> {
         self.zones.check()?;
+        within("cut_m", self.cut_m, 0.0, 1e9)?;
         within("corridors", self.corridors, 1, 1000)
     }
 }
@@ -51,19 +86,31 @@ impl Parameters for Funnel {
 pub struct Ants {
     /// How danger zones are made.
     pub zones: ZoneSettings,
+    /// How the path is smoothed.
+    pub smoothing: Curve,
+    /// What a fillet may cut off at a corner (m).
+    pub cut_m: f64,
     /// Ants in an iteration.
     pub population: usize,
 }
 
 impl Default for Ants {
     fn default() -> Self {
-        Self { zones: ZoneSettings::default(), population: 80 }
+        Self { zones: ZoneSettings::default(), smoothing: Curve::None, cut_m: CUT, population: 80 }
+    }
+}
+
+impl Ants {
+    /// How the path is smoothed.
+    pub fn smoothing(&self) -> Smoothing {
+        Smoothing::new(self.smoothing, self.cut_m)
     }
 }
 
 impl Parameters for Ants {
     fn check(&self) -> Result<(), PlanError> {
         self.zones.check()?;
+        within("cut_m", self.cut_m, 0.0, 1e9)?;
         within("population", self.population, 1, 100_000)
     }
 }
@@ -79,12 +126,27 @@ pub enum Unit {
     Ratio,
 }
 
+/// Where the waypoints of a swarm lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Places {
+    /// One on each link of the shortest MAKLINK route.
+    #[default]
+    Links,
+    /// Beside the straight line, at equal distances along it: for maps that have no links, as rasters.
+    Line,
+}
+
 /// Parameters of `maklink-pso` and `rmpso`.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Particles {
     /// How danger zones are made.
     pub zones: ZoneSettings,
+    /// How the path is smoothed.
+    pub smoothing: Curve,
+    /// What a fillet may cut off at a corner (m).
+    pub cut_m: f64,
     /// Number of particles.
     pub population: usize,
     /// The inertia weight; without it `linear` in `maklink-pso` and `reinforced` in `rmpso`.
@@ -103,12 +165,22 @@ pub struct Particles {
     pub social: f64,
     /// What is minimised.
     pub objective: Objective,
+    /// Where the waypoints lie.
+    pub places: Places,
+    /// Beside the line: how many there are, ...
+    pub points: usize,
+    /// ... how far beside it they may lie (m; 0: a third of its length), ...
+    pub reach_m: f64,
+    /// ... and what a blocked path pays.
+    pub penalty: Penalty,
 }
 
 impl Default for Particles {
     fn default() -> Self {
         Self {
             zones: ZoneSettings::default(),
+            smoothing: Curve::None,
+            cut_m: CUT,
             population: 80,
             inertia: None,
             offset: 0.63,
@@ -118,18 +190,32 @@ impl Default for Particles {
             cognitive: 2.0,
             social: 2.0,
             objective: Objective::Length,
+            places: Places::Links,
+            points: 8,
+            reach_m: 0.0,
+            penalty: Penalty::Graded,
         }
+    }
+}
+
+impl Particles {
+    /// How the path is smoothed.
+    pub fn smoothing(&self) -> Smoothing {
+        Smoothing::new(self.smoothing, self.cut_m)
     }
 }
 
 impl Parameters for Particles {
     fn check(&self) -> Result<(), PlanError> {
         self.zones.check()?;
+        within("cut_m", self.cut_m, 0.0, 1e9)?;
         within("population", self.population, 1, 100_000)?;
         within("offset", self.offset, -10.0, 10.0)?;
         within("v_max", self.v_max, 1e-9, 1e9)?;
         within("cognitive", self.cognitive, 0.0, 10.0)?;
-        within("social", self.social, 0.0, 10.0)
+        within("social", self.social, 0.0, 10.0)?;
+        within("points", self.points, 1, 1000)?;
+        within("reach_m", self.reach_m, 0.0, 1e9)
     }
 }
 

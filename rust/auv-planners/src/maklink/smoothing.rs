@@ -2,12 +2,66 @@
 //! through zones; a fillet at each corner cuts off no more than it is allowed.
 
 use auv_world::math::Vec2;
+use serde::Deserialize;
 
 use super::chart::Chart;
 use super::route::{distance, length};
 
 /// Points on a curve.
 const POINTS: usize = 16;
+/// Fillets deeper than this in the zones that count are not taken (m).
+const SHARP: f64 = 1e-7;
+
+/// How a path is smoothed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Curve {
+    /// Not at all.
+    #[default]
+    None,
+    /// By a fillet at each corner, on zones that are wider by what it cuts off.
+    Fillet,
+    /// By one cubic Bezier curve on four points, as in the paper, whatever it cuts through.
+    Bezier,
+}
+
+/// The curve, and what it may cut off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Smoothing {
+    curve: Curve,
+    cut_m: f64,
+}
+
+impl Smoothing {
+    /// Smoothing by a curve; a fillet cuts off at most `cut_m` metres at a corner.
+    pub fn new(curve: Curve, cut_m: f64) -> Self {
+        Self { curve, cut_m }
+    }
+
+    /// By how much wider the zones must be on which the path is planned (m).
+    pub fn cut_m(&self) -> f64 {
+        if self.curve == Curve::Fillet { self.cut_m } else { 0.0 }
+    }
+
+    /// A path smoothed on the chart on which it was planned. Its depth is that in the zones that count: of a path
+    /// on wider zones what is left of it.
+    pub fn apply(&self, chart: &Chart, path: &[Vec2]) -> Smoothed {
+        match self.curve {
+            Curve::None => Smoothed { path: path.to_vec(), depth_m: 0.0 },
+            Curve::Bezier => one_bezier(chart, path),
+            Curve::Fillet => {
+                let smooth = fillets(chart, path, self.cut_m);
+                let depth_m = (smooth.depth_m - self.cut_m).max(0.0);
+                // Rounding apart a fillet never cuts off more; if it did, the corners would stay.
+                if depth_m > SHARP {
+                    Smoothed { path: path.to_vec(), depth_m: 0.0 }
+                } else {
+                    Smoothed { depth_m, ..smooth }
+                }
+            }
+        }
+    }
+}
 
 /// A smoothed path, and what it cost.
 #[derive(Debug, Clone, PartialEq)]

@@ -156,12 +156,17 @@ impl<'a> Swarm<'a> {
     fn judge(&mut self, counted: usize) {
         let n = self.size;
         self.corridor.costs(&self.positions, n, &mut self.last, &mut self.costs[..counted]);
+        if self.corridor.is_open() {
+            for i in 0..counted {
+                self.costs[i] += self.corridor.penalty(|link| self.positions[link * n + i]);
+            }
+        }
         for i in 0..counted {
             // A penalty makes no path better: only where a path would be the best is it looked at.
             if self.costs[i] >= self.best_costs[i] {
                 continue;
             }
-            if self.rules.bounds == Bounds::Penalty && self.is_blocked(i) {
+            if self.rules.bounds == Bounds::Penalty && !self.corridor.is_open() && self.is_blocked(i) {
                 self.costs[i] += BLOCKED;
                 if self.costs[i] >= self.best_costs[i] {
                     continue;

@@ -28,7 +28,7 @@ pub fn shortest(
         let promise = |i: usize| length[i] + distance(points[i], goal);
         let open = (0..points.len()).filter(|&i| !settled[i] && length[i].is_finite());
         let Some(here) = open.min_by(|&a, &b| promise(a).total_cmp(&promise(b))) else {
-            return Err(MapError::NoWay);
+            return Err(MapError::NoWay { polygons: chart.barriers(start) });
         };
         if here == 1 {
             break;

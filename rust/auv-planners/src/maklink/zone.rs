@@ -125,6 +125,17 @@ impl Zone {
 /// # Errors
 /// [`MapError`] for a polygon that has no area or a corner that is not finite.
 pub fn zones(area: &Area, polygons: &[Vec<Vec2>], distance: f64, mitre_limit: f64) -> Result<Vec<Zone>, MapError> {
+    let mut zones = each(area, polygons, distance, mitre_limit)?;
+    merge(&mut zones);
+    zones.sort_by(|a, b| a.corners[0][0].total_cmp(&b.corners[0][0]).then(a.corners[0][1].total_cmp(&b.corners[0][1])));
+    Ok(zones)
+}
+
+/// The same, each polygon by itself: zones in the order of the list, which may overlap.
+///
+/// # Errors
+/// As [`zones`].
+pub fn each(area: &Area, polygons: &[Vec<Vec2>], distance: f64, mitre_limit: f64) -> Result<Vec<Zone>, MapError> {
     let mut zones = Vec::with_capacity(polygons.len());
     for (index, polygon) in polygons.iter().enumerate() {
         if polygon.iter().any(|p| !(p[0].is_finite() && p[1].is_finite())) {
@@ -138,8 +149,6 @@ pub fn zones(area: &Area, polygons: &[Vec<Vec2>], distance: f64, mitre_limit: f6
         // What lies outside the area is nobody's danger.
         zones.extend(Zone::around(&ring, vec![index]));
     }
-    merge(&mut zones);
-    zones.sort_by(|a, b| a.corners[0][0].total_cmp(&b.corners[0][0]).then(a.corners[0][1].total_cmp(&b.corners[0][1])));
     Ok(zones)
 }
 

@@ -185,6 +185,7 @@ impl<'a> Query<'a> {
             history: self.history,
             coefficients: Vec::new(),
             interrupted: self.interrupted,
+            harbor: None,
         }
     }
 }

@@ -43,6 +43,9 @@ impl<'a> Draw<'a> {
         if layout.dimensions == 2 && parameters.peaks.is_some() {
             return Err(WorldError::parameter("peaks", "given", "only families in 3-D have a seabed with peaks"));
         }
+        if parameters.vessels.is_some() {
+            return Err(WorldError::parameter("vessels", "given", "only harbor has vessels"));
+        }
         if parameters.current_ratio.is_some() && parameters.ring_ratio.is_some() {
             return Err(WorldError::parameter("ring_ratio", "given", "give current_ratio or ring_ratio, not both"));
         }

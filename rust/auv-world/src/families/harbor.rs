@@ -1,6 +1,8 @@
 //! `harbor`: basins of 200 x 200 m with polygons that need not be convex and may overlap or reach the walls, in
-//! a uniform current, as Huang & Jin (2021) have them. A way from start to goal always exists.
+//! a uniform current, as Huang & Jin (2021) have them. A way from start to goal always exists, and is never
+//! straight. Vessels, if asked for, cross the basin at constant velocity.
 
+use std::cmp::Reverse;
 use std::f64::consts::TAU;
 
 use super::{Difficulty, Parameters, few, not_negative};
@@ -9,8 +11,8 @@ use crate::error::WorldError;
 use crate::math::{Vec2, Vec3, distance};
 use crate::rng::{Purpose, Stream};
 use crate::scenario::{
-    Current, Domain, Episode, Limits, Mission, Obstacle, Polygon, SCHEMA, Scenario, SectionFrame, Sections, Uniform,
-    Vehicle,
+    Current, Disc, Domain, Episode, Limits, Mission, Obstacle, Polygon, SCHEMA, Scenario, SectionFrame, Sections,
+    Uniform, Vehicle,
 };
 
 /// The box (m).
@@ -22,15 +24,20 @@ const MARGIN: f64 = 12.0;
 /// The way that must exist keeps this clear of polygons (m), looked at on a grid this fine.
 const PASSAGE: f64 = 4.0;
 const CELL: f64 = 2.0;
+/// Radius of vessels (m), and the fastest one's speed over the vehicle's unless told; the slowest has half of it.
+const VESSEL: [f64; 2] = [4.0, 8.0];
+const VESSEL_RATIO: f64 = 0.6;
+/// Vessels begin this clear of start and goal (m).
+const VESSEL_MARGIN: f64 = 25.0;
 /// Maps drawn before there counts as being no way.
 const TRIES: usize = 200;
 
 /// Number of polygons, current over the vehicle's speed, and the time factor.
 fn calibration(difficulty: Difficulty) -> (usize, f64, f64) {
     match difficulty {
-        Difficulty::Easy => (5, 0.1, 2.0),
-        Difficulty::Normal => (8, 0.2, 2.0),
-        Difficulty::Hard => (12, 0.5, 2.5),
+        Difficulty::Easy => (8, 0.1, 2.0),
+        Difficulty::Normal => (14, 0.2, 2.0),
+        Difficulty::Hard => (20, 0.5, 2.5),
     }
 }
 
@@ -40,16 +47,20 @@ fn calibration(difficulty: Difficulty) -> (usize, f64, f64) {
 /// [`WorldError`] for a parameter that is not allowed, by name.
 pub(super) fn draw(seed: u64, parameters: &Parameters) -> Result<Scenario, WorldError> {
     few("obstacles", parameters.obstacles)?;
+    few("vessels", parameters.vessels)?;
     for (name, given) in [
         ("vortices", parameters.vortices.is_some()),
         ("peaks", parameters.peaks.is_some()),
         ("ring_ratio", parameters.ring_ratio.is_some()),
         ("change_every_m", parameters.change_every_m.is_some()),
-        ("obstacle_speed_mps", parameters.obstacle_speed_mps.is_some()),
         ("vortex_drift_mps", parameters.vortex_drift_mps.is_some()),
     ] {
         if given {
-            return Err(WorldError::parameter(name, "given", "harbor has polygons at rest in a uniform current"));
+            return Err(WorldError::parameter(
+                name,
+                "given",
+                "harbor has polygons at rest, vessels and a uniform current, and never changes",
+            ));
         }
     }
     let (count, ratio, time_factor) = calibration(parameters.difficulty);
@@ -57,13 +68,16 @@ pub(super) fn draw(seed: u64, parameters: &Parameters) -> Result<Scenario, World
     let ratio = not_negative("current_ratio", parameters.current_ratio, ratio)?;
     let speed = not_negative("vehicle_speed_mps", parameters.vehicle_speed_mps, 1.5)?;
     let time_factor = not_negative("time_factor", parameters.time_factor, time_factor)?;
+    let noise = not_negative("sensor_noise_m", parameters.sensor_noise_m, 0.0)?;
+    let fastest = not_negative("obstacle_speed_mps", parameters.obstacle_speed_mps, VESSEL_RATIO * speed)?;
+    let vessels = parameters.vessels.unwrap_or(0);
     let mut stream = Stream::new(seed, Purpose::Family, 5);
     for _ in 0..TRIES {
         let mission = mission(&mut stream);
         let heading = stream.uniform(0.0, TAU);
         let velocity_mps = [ratio * speed * libm::cos(heading), ratio * speed * libm::sin(heading)];
         let obstacles = (0..count).map(|_| Obstacle::Polygon(polygon(&mut stream))).collect();
-        let scenario = Scenario {
+        let mut scenario = Scenario {
             schema: SCHEMA,
             name: format!("harbor-seed-{seed}"),
             description: String::new(),
@@ -73,7 +87,7 @@ pub(super) fn draw(seed: u64, parameters: &Parameters) -> Result<Scenario, World
             domain: Domain { min_m: [0.0; 3], max_m: [SIDE, SIDE, 0.0], margin_m: 500.0 * SCALE },
             limits: Limits { goal_radius_m: 300.0 * SCALE, time_factor, energy_factor: time_factor },
             vehicle: Vehicle { speed_mps: speed, yaw_rate_radps: 60.0_f64.to_radians(), ..Vehicle::default() },
-            episode: episode(),
+            episode: episode(noise),
             sections: Some(Sections {
                 count: 20,
                 frame: SectionFrame::Mission,
@@ -88,7 +102,11 @@ pub(super) fn draw(seed: u64, parameters: &Parameters) -> Result<Scenario, World
             currents: if ratio > 0.0 { vec![Current::Uniform(Uniform { velocity_mps })] } else { Vec::new() },
             obstacles,
         };
-        if has_way(&World::trusted(scenario.clone(), seed), &mission) {
+        let world = World::trusted(scenario.clone(), seed);
+        if (count == 0 || is_barred(&world, &mission)) && has_way(&world, &mission) {
+            // Of a stream of their own: the same basin with and without them.
+            let mut stream = Stream::new(seed, Purpose::Family, 6);
+            scenario.obstacles.extend((0..vessels).map(|_| vessel(&mut stream, &mission, fastest)));
             return Ok(scenario);
         }
     }
@@ -96,7 +114,7 @@ pub(super) fn draw(seed: u64, parameters: &Parameters) -> Result<Scenario, World
 }
 
 /// LFHH's legs, in proportion to box and speed.
-fn episode() -> Episode {
+fn episode(sensor_noise_m: f64) -> Episode {
     let (time, legs) = (SCALE * 2.0 / 1.5, Episode::default());
     Episode {
         tick_s: legs.tick_s * time,
@@ -107,7 +125,7 @@ fn episode() -> Episode {
         station_radius_m: legs.station_radius_m * SCALE,
         waypoint_margin_m: 1.0,
         sonar_range_m: legs.sonar_range_m * SCALE,
-        sensor_noise_m: 0.0,
+        sensor_noise_m,
     }
 }
 
@@ -136,6 +154,37 @@ fn polygon(stream: &mut Stream) -> Polygon {
     Polygon { vertices_m: (0..corners).map(corner).collect(), top_m: -1.0, bottom_m: 1.0, velocity_mps: [0.0; 2] }
 }
 
+/// A disc on a straight course: over anything at rest, and back at the walls.
+fn vessel(stream: &mut Stream, mission: &Mission, fastest: f64) -> Obstacle {
+    let radius_m = stream.uniform(VESSEL[0], VESSEL[1]);
+    let heading = stream.uniform(0.0, TAU);
+    let pace = stream.uniform(0.5, 1.0) * fastest;
+    // Start and goal are far enough apart that there is always room.
+    let position_m = loop {
+        let place = [stream.uniform(0.0, SIDE), stream.uniform(0.0, SIDE)];
+        let clear = |end: Vec3| distance(end, [place[0], place[1], end[2]]) >= radius_m + VESSEL_MARGIN;
+        if clear(mission.start_m) && clear(mission.goal_m) {
+            break place;
+        }
+    };
+    Obstacle::Disc(Disc {
+        position_m,
+        radius_m,
+        velocity_mps: [pace * libm::cos(heading), pace * libm::sin(heading)],
+        manoeuvre: None,
+    })
+}
+
+/// Whether something lies on the straight line from start to goal.
+fn is_barred(world: &World, mission: &Mission) -> bool {
+    let (start, goal) = (mission.start_m, mission.goal_m);
+    let pieces = (distance(start, goal) / CELL) as usize;
+    (1..pieces).any(|piece| {
+        let part = piece as f64 / pieces as f64;
+        world.clearance(std::array::from_fn(|axis| start[axis] + part * (goal[axis] - start[axis]))) < 0.0
+    })
+}
+
 /// Whether start and goal are clear, and joined by cells of a grid that are.
 fn has_way(world: &World, mission: &Mission) -> bool {
     if [mission.start_m, mission.goal_m].iter().any(|end| world.clearance(*end) < MARGIN) {
@@ -146,23 +195,28 @@ fn has_way(world: &World, mission: &Mission) -> bool {
         |cell: usize| -> Vec3 { [((cell % CELLS) as f64 + 0.5) * CELL, ((cell / CELLS) as f64 + 0.5) * CELL, 0.0] };
     let cell = |point: Vec3| (point[1] / CELL) as usize * CELLS + (point[0] / CELL) as usize;
     let (start, goal) = (cell(mission.start_m), cell(mission.goal_m));
+    let far = |&cell: &usize| (cell % CELLS).abs_diff(goal % CELLS) + (cell / CELLS).abs_diff(goal / CELLS);
     let mut seen = vec![false; CELLS * CELLS];
     let mut open = vec![start];
     seen[start] = true;
     while let Some(here) = open.pop() {
+        if here != start && world.clearance(place(here)) < PASSAGE {
+            continue;
+        }
         if here == goal {
             return true;
         }
         let (column, row) = (here % CELLS, here / CELLS);
-        let beside = [
+        let mut beside = [
             (column > 0).then(|| here - 1),
             (column + 1 < CELLS).then_some(here + 1),
             (row > 0).then(|| here - CELLS),
             (row + 1 < CELLS).then_some(here + CELLS),
         ];
+        // The nearest to the goal comes first: most ways show before most of the basin has been looked at.
+        beside.sort_unstable_by_key(|there| Reverse(there.as_ref().map(far)));
         for there in beside.into_iter().flatten() {
-            if !seen[there] && world.clearance(place(there)) >= PASSAGE {
-                seen[there] = true;
+            if !std::mem::replace(&mut seen[there], true) {
                 open.push(there);
             }
         }
@@ -198,5 +252,34 @@ mod tests {
         let empty = Parameters { obstacles: Some(0), current_ratio: Some(0.0), ..Parameters::default() };
         let scenario = generate("harbor", 1, &empty).unwrap();
         assert!(scenario.currents.is_empty() && scenario.obstacles.is_empty());
+    }
+
+    #[test]
+    fn vessels_leave_the_basin_as_it_was() {
+        let bare = generate("harbor", 3, &Parameters::default()).unwrap();
+        let busy = Parameters { vessels: Some(20), obstacle_speed_mps: Some(1.0), ..Parameters::default() };
+        let busy = generate("harbor", 3, &busy).unwrap();
+        busy.check().unwrap();
+        assert_eq!(busy.missions, bare.missions);
+        assert_eq!(busy.currents, bare.currents);
+        assert_eq!(busy.obstacles[..bare.obstacles.len()], bare.obstacles);
+        let vessels = &busy.obstacles[bare.obstacles.len()..];
+        assert_eq!(vessels.len(), 20);
+        for vessel in vessels {
+            let [u, v, _] = vessel.velocity_mps();
+            assert!((0.5..=1.0).contains(&(u * u + v * v).sqrt()));
+            for end in [busy.missions[0].start_m, busy.missions[0].goal_m] {
+                assert!(distance(vessel.position_m(), end) >= VESSEL_MARGIN + VESSEL[0]);
+            }
+        }
+    }
+
+    #[test]
+    fn the_straight_line_is_barred() {
+        for seed in 0..30 {
+            let parameters = Parameters { obstacles: Some(1 + seed as usize % 9), ..Parameters::default() };
+            let world = World::trusted(generate("harbor", seed, &parameters).unwrap(), seed);
+            assert!(is_barred(&world, world.mission()), "{seed}");
+        }
     }
 }

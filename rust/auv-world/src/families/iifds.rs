@@ -47,6 +47,7 @@ pub(super) fn draw(seed: u64, parameters: &Parameters) -> Result<Scenario, World
         ("ring_ratio", parameters.ring_ratio.is_some()),
         ("change_every_m", parameters.change_every_m.is_some()),
         ("vortex_drift_mps", parameters.vortex_drift_mps.is_some()),
+        ("vessels", parameters.vessels.is_some()),
     ] {
         if given {
             return Err(WorldError::parameter(name, "given", "iifds has threats and a jet, which never change"));

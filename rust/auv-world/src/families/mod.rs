@@ -73,7 +73,7 @@ pub struct Parameters {
     /// Whose distributions.
     pub variant: Variant,
     /// Number of discs (lfhh-2d 22) or spheres (lfhh-3d 70; afhh 60, 120, 200 by difficulty) or threats
-    /// (iifds 3) or polygons (harbor 5, 8, 12 by difficulty).
+    /// (iifds 3) or polygons (harbor 8, 14, 20 by difficulty).
     pub obstacles: Option<usize>,
     /// Number of vortices (6, afhh 0).
     pub vortices: Option<usize>,
@@ -99,6 +99,8 @@ pub struct Parameters {
     pub manoeuvres: Option<Manoeuvres>,
     /// Noise of seen obstacles (m), 0 (iifds 20).
     pub sensor_noise_m: Option<f64>,
+    /// Number of vessels under way, 0 (harbor only).
+    pub vessels: Option<usize>,
 }
 
 /// Draws a scenario of a family.

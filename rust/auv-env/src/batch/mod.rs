@@ -1,0 +1,170 @@
+//! Many environments at once: one call steps them all, on threads of the batch's own.
+//!
+//! Environments do not know each other, and each writes its own row: what comes out is what single
+//! episodes give, whatever the number of threads.
+
+mod lane;
+mod pool;
+
+use rayon::prelude::*;
+
+pub use lane::Lane;
+use pool::Pool;
+
+use crate::episode::{Episode, Record};
+use crate::error::EnvError;
+use crate::observation;
+use crate::source::Source;
+
+/// What follows when an episode ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Autoreset {
+    /// The next step begins another and takes no action.
+    NextStep,
+    /// The same step begins another and gives its first observation.
+    SameStep,
+    /// Nothing: whoever steps begins another.
+    Disabled,
+}
+
+/// Environments between two looks at whether to stop.
+const AT_ONCE: usize = 1024;
+
+/// Many environments.
+#[derive(Debug)]
+pub struct Batch {
+    source: Source,
+    autoreset: Autoreset,
+    record: Record,
+    lanes: Vec<Lane>,
+    pool: Pool,
+    /// Entries of an action and of an observation.
+    widths: (usize, usize),
+}
+
+impl Batch {
+    /// `count` environments of `source` on `threads` threads, before their first episode.
+    pub fn new(source: Source, count: usize, threads: usize, autoreset: Autoreset, record: Record) -> Self {
+        let dimensions = source.dimensions();
+        let widths = (usize::from(dimensions), observation::length(dimensions));
+        let lanes = (0..count).map(|_| Lane::empty()).collect();
+        Self { source, autoreset, record, lanes, pool: Pool::new(threads.min(count)), widths }
+    }
+
+    /// The environments.
+    pub fn lanes(&self) -> &[Lane] {
+        &self.lanes
+    }
+
+    /// Entries of one action.
+    pub fn action_len(&self) -> usize {
+        self.widths.0
+    }
+
+    /// Entries of one observation.
+    pub fn observation_len(&self) -> usize {
+        self.widths.1
+    }
+
+    /// Number of threads.
+    pub fn threads(&self) -> usize {
+        self.pool.threads()
+    }
+
+    /// The episode of environment `index`, once it has begun one.
+    pub fn episode(&self, index: usize) -> Option<&Episode> {
+        self.lanes.get(index)?.episode.as_ref()
+    }
+
+    /// The same, to be changed.
+    pub fn episode_mut(&mut self, index: usize) -> Option<&mut Episode> {
+        self.lanes.get_mut(index)?.episode.as_mut()
+    }
+
+    /// Puts an episode in the place of environment `index`'s.
+    pub fn replace(&mut self, index: usize, mut episode: Episode) {
+        if let Some(lane) = self.lanes.get_mut(index) {
+            episode.record(self.record);
+            (lane.now, lane.episode) = (episode.measures(), Some(episode));
+        }
+    }
+
+    /// Begins the episodes with these seeds; where there is none, the present one goes on. Writes a row of
+    /// `observations` for each environment.
+    ///
+    /// # Errors
+    /// [`EnvError`] if a world cannot be drawn or `stop` said so: some episodes have begun then.
+    pub fn reset(
+        &mut self,
+        seeds: &[Option<u64>],
+        observations: &mut [f32],
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Result<(), EnvError> {
+        let (source, record) = (self.source.clone(), self.record);
+        self.each(observations, stop, |index, lane, observation| match seeds[index] {
+            Some(seed) => lane.begin(&source, seed, record, observation),
+            None => lane.look(observation),
+        })
+    }
+
+    /// Steps every environment. `actions` has a row for each, `seeds` the seed of the episode that each
+    /// begins if it begins one.
+    ///
+    /// # Errors
+    /// [`EnvError`] for a wrong action or an ended episode that nothing begins again: nothing has moved
+    /// then. If a world cannot be drawn or `stop` said so, some environments have stepped.
+    pub fn step(
+        &mut self,
+        actions: &[f32],
+        seeds: &[u64],
+        observations: &mut [f32],
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Result<(), EnvError> {
+        let (width, autoreset) = (self.action_len(), self.autoreset);
+        for (index, (lane, action)) in self.lanes.iter().zip(actions.chunks_exact(width)).enumerate() {
+            let begins = autoreset == Autoreset::NextStep && lane.over();
+            if let Some(episode) = lane.episode.as_ref().filter(|_| !begins) {
+                episode.check(action).map_err(|error| error.of(index))?;
+            }
+        }
+        let (source, record) = (self.source.clone(), self.record);
+        self.each(observations, stop, |index, lane, observation| {
+            let action = &actions[index * width..(index + 1) * width];
+            let begin = |lane: &mut Lane, observation: &mut [f32]| {
+                lane.begin(&source, seeds[index], record, observation);
+            };
+            lane.step(action, autoreset, begin, observation);
+        })
+    }
+
+    /// Works on every environment and its row of `observations`, on all threads.
+    fn each(
+        &mut self,
+        observations: &mut [f32],
+        stop: &mut dyn FnMut() -> bool,
+        work: impl Fn(usize, &mut Lane, &mut [f32]) + Sync,
+    ) -> Result<(), EnvError> {
+        let width = self.widths.1;
+        let chunks = self.lanes.chunks_mut(AT_ONCE).zip(observations.chunks_mut(AT_ONCE * width));
+        for (chunk, (lanes, rows)) in chunks.enumerate() {
+            let first = chunk * AT_ONCE;
+            let one = |(i, (lane, row)): (usize, (&mut Lane, &mut [f32]))| work(first + i, lane, row);
+            match self.pool.running() {
+                None => lanes.iter_mut().zip(rows.chunks_exact_mut(width)).enumerate().for_each(one),
+                Some(threads) => threads.install(|| {
+                    lanes.par_iter_mut().zip(rows.par_chunks_exact_mut(width)).enumerate().for_each(one);
+                }),
+            }
+            if let Some((i, error)) = lanes.iter_mut().enumerate().find_map(|(i, lane)| Some((i, lane.error.take()?))) {
+                return Err(error.of(first + i));
+            }
+            if stop() {
+                return Err(EnvError::Stopped);
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,164 @@
+//! `Batch`: many episodes at once.
+
+use auv_env::episode::{Measures, Record};
+use auv_env::{Autoreset, Outcome};
+use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::episode::{Episode, Source};
+use crate::errors;
+use crate::interrupt::Signals;
+
+/// Names of outcomes; a batch's `outcome` is an index into them.
+#[pyfunction]
+pub fn outcomes() -> Vec<&'static str> {
+    OUTCOMES.map(Outcome::name).to_vec()
+}
+
+const OUTCOMES: [Outcome; 6] =
+    [Outcome::Running, Outcome::Goal, Outcome::Collision, Outcome::OutOfBounds, Outcome::Energy, Outcome::Timeout];
+
+/// Many episodes at once.
+#[pyclass(module = "auvgym._core")]
+pub struct Batch(auv_env::Batch);
+
+type Stepped<'py> = (Bound<'py, PyArray2<f32>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<bool>>);
+
+impl Batch {
+    fn at(&self, index: usize) -> PyResult<&auv_env::Episode> {
+        self.0.episode(index).ok_or_else(|| missing(index))
+    }
+
+    /// Works without the GIL on a new array with a row for each environment; asks for Ctrl-C meanwhile.
+    fn fill<'py>(
+        &mut self,
+        py: Python<'py>,
+        work: impl FnOnce(&mut auv_env::Batch, &mut [f32], &mut dyn FnMut() -> bool) -> Result<(), auv_env::EnvError> + Send,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let array = PyArray2::zeros(py, [self.0.lanes().len(), self.0.observation_len()], false);
+        let mut view = array.try_readwrite()?;
+        let (values, mut signals) = (view.as_slice_mut()?, Signals::new());
+        let batch = &mut self.0;
+        let done = py.detach(|| work(batch, values, &mut || signals.stop()));
+        signals.finish()?;
+        done.map_err(errors::env)?;
+        drop(view);
+        Ok(array)
+    }
+}
+
+fn column<'py, R, T: Element>(py: Python<'py>, rows: &[R], value: impl Fn(&R) -> T) -> Bound<'py, PyArray1<T>> {
+    PyArray1::from_iter(py, rows.iter().map(value))
+}
+
+fn missing(index: usize) -> PyErr {
+    PyIndexError::new_err(format!("no episode of environment {index}"))
+}
+
+#[pymethods]
+impl Batch {
+    /// `autoreset`: "NextStep", "SameStep" or "Disabled"; `record` keeps trails and actions.
+    #[new]
+    fn new(source: &Source, count: usize, threads: usize, autoreset: &str, record: bool) -> PyResult<Self> {
+        let autoreset = match autoreset {
+            "NextStep" => Autoreset::NextStep,
+            "SameStep" => Autoreset::SameStep,
+            "Disabled" => Autoreset::Disabled,
+            other => return Err(PyValueError::new_err(format!("autoreset = {other:?}: there is none of that name"))),
+        };
+        let record = if record { Record::Everything } else { Record::Nothing };
+        Ok(Self(auv_env::Batch::new(source.0.clone(), count, threads, autoreset, record)))
+    }
+
+    #[getter]
+    fn threads(&self) -> usize {
+        self.0.threads()
+    }
+
+    fn __len__(&self) -> usize {
+        self.0.lanes().len()
+    }
+
+    /// Begins the episodes with these seeds where `mask` says so; observations of all.
+    fn reset<'py>(
+        &mut self,
+        py: Python<'py>,
+        seeds: PyReadonlyArray1<'py, u64>,
+        mask: PyReadonlyArray1<'py, bool>,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let chosen = seeds.as_slice()?.iter().zip(mask.as_slice()?);
+        let seeds: Vec<_> = chosen.map(|(seed, begins)| begins.then_some(*seed)).collect();
+        self.expect("seeds", seeds.len(), 1)?;
+        self.fill(py, |batch, observations, stop| batch.reset(&seeds, observations, stop))
+    }
+
+    /// Steps all: (observations, rewards, ended).
+    fn step<'py>(
+        &mut self,
+        py: Python<'py>,
+        actions: PyReadonlyArray2<'py, f32>,
+        seeds: PyReadonlyArray1<'py, u64>,
+    ) -> PyResult<Stepped<'py>> {
+        let (actions, seeds) = (actions.as_slice()?, seeds.as_slice()?);
+        self.expect("actions", actions.len(), self.0.action_len())?;
+        self.expect("seeds", seeds.len(), 1)?;
+        let observations = self.fill(py, |batch, rows, stop| batch.step(actions, seeds, rows, stop))?;
+        let lanes = self.0.lanes();
+        Ok((observations, column(py, lanes, |lane| lane.reward), column(py, lanes, |lane| lane.ended)))
+    }
+
+    /// What is measured, a column each: now, or when the `last` episode ended.
+    fn info<'py>(&self, py: Python<'py>, last: bool) -> PyResult<Bound<'py, PyDict>> {
+        let lanes = self.0.lanes().iter();
+        // Side by side first: environments lie far apart.
+        let rows: Vec<Measures> = lanes.map(|lane| if last { lane.last } else { lane.now }).collect();
+        let info = PyDict::new(py);
+        info.set_item("time_s", column(py, &rows, |row| row.time_s))?;
+        info.set_item("energy_j", column(py, &rows, |row| row.energy_j))?;
+        info.set_item("path_length_m", column(py, &rows, |row| row.path_length_m))?;
+        info.set_item("min_clearance_m", column(py, &rows, |row| row.min_clearance_m))?;
+        info.set_item("distance_to_goal_m", column(py, &rows, |row| row.distance_to_goal_m))?;
+        info.set_item("evaluations", column(py, &rows, |row| row.evaluations as i64))?;
+        info.set_item("replans", column(py, &rows, |row| row.replans as i64))?;
+        info.set_item("map_changes", column(py, &rows, |row| row.map_changes as i64))?;
+        info.set_item("map_changed", column(py, &rows, |row| row.map_changed))?;
+        info.set_item("is_success", column(py, &rows, |row| row.outcome == Outcome::Goal))?;
+        let code = |row: &Measures| OUTCOMES.iter().position(|outcome| *outcome == row.outcome).unwrap_or(0) as i64;
+        info.set_item("outcome", column(py, &rows, code))?;
+        Ok(info)
+    }
+
+    /// The last observation of environment `index`'s last episode.
+    fn last_observation<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let lane = self.0.lanes().get(index).ok_or_else(|| missing(index))?;
+        Ok(PyArray1::from_slice(py, &lane.last_observation))
+    }
+
+    /// A copy of environment `index`'s episode.
+    fn episode(&self, index: usize) -> PyResult<Episode> {
+        self.at(index).cloned().map(Episode)
+    }
+
+    /// Puts a copy of an episode in the place of environment `index`'s.
+    fn replace(&mut self, index: usize, episode: &Episode) {
+        self.0.replace(index, episode.0.clone());
+    }
+
+    /// Charges planning to environment `index`'s episode.
+    fn charge(&mut self, index: usize, evaluations: u64, replans: u64) -> PyResult<()> {
+        self.0.episode_mut(index).ok_or_else(|| missing(index))?.charge(evaluations, replans);
+        Ok(())
+    }
+}
+
+impl Batch {
+    fn expect(&self, what: &str, entries: usize, each: usize) -> PyResult<()> {
+        let count = self.0.lanes().len() * each;
+        if entries == count {
+            return Ok(());
+        }
+        Err(PyValueError::new_err(format!("{what} has {entries} entries: must have {count}")))
+    }
+}
