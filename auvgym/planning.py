@@ -52,8 +52,8 @@ class Plan:
         history: best total cost against evaluations so far, (m, 2) float64.
         window: sections of the last planning window, where one was used.
         harbor: what planners of harbours say of the path; None from others.
-        coefficients: those of the flow that drew the path (``rho``, ``sigma``, ``theta``,
-            ``lambda``), chosen or tuned; empty for all but the planners ``iifds``.
+        coefficients: those of the flow that drew the path, chosen or tuned (``rho``, ``sigma``,
+            ``theta``, ``lambda``); empty for all but the planners ``iifds``.
     """
 
     planner: str

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import textwrap
 from pathlib import Path
 from types import ModuleType
 
@@ -55,3 +56,17 @@ def test_every_board_is_of_a_shipped_suite(make_board: ModuleType) -> None:
     for name, definition in make_board.definitions().items():
         assert name in evaluation.list_suites()
         assert definition["policies"] in ("suite", "all")
+
+
+def test_the_documents_policy_flies(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The submission of docs/leaderboard.md, as it stands there."""
+    page = (HERE.parents[1] / "docs" / "leaderboard.md").read_text(encoding="utf-8")
+    code = textwrap.dedent(page.partition("```python\n")[2].partition("```")[0])
+    assert "class Forward" in code
+    (tmp_path / "forward.py").write_text(code)
+    monkeypatch.syspath_prepend(tmp_path)
+    suite = evaluation.Suite("one", evaluation.load_suite("demo").instances[:1])
+    with evaluation.Store(tmp_path / "results.db") as store:
+        (row,) = evaluation.run(suite, [evaluation.PolicySpec("forward:Forward")], store)
+    assert not row.policy_failed, row.error
+    assert evaluation.verify(tmp_path / "results.db").differences == []

@@ -45,7 +45,20 @@ def test_version() -> None:
     assert call("--version").output.strip() == f"auvgym {auvgym.__version__}"
 
 
-@pytest.mark.parametrize("command", ["list", "plan", "evaluate", "leaderboard", "replay"])
+@pytest.mark.parametrize(
+    "command",
+    [
+        "list",
+        "plan",
+        "evaluate",
+        "leaderboard",
+        "replay",
+        "verify",
+        "report",
+        "export",
+        "suite",
+    ],
+)
 def test_help_has_an_example(command: str) -> None:
     result = call(command, "--help")
     assert result.exit_code == 0
@@ -243,12 +256,8 @@ def _wait_for_rows(database: Path, process: subprocess.Popen[str], rows: int) ->
     while time.monotonic() < deadline:
         assert process.poll() is None, process.communicate()
         if database.exists():
-            try:
-                with Store(database) as store:
-                    if len(store.results()) >= rows:
-                        return
-            except ValueError:
-                # Caught between the file's making and its first table.
-                pass
+            with Store(database, read_only=True) as store:
+                if len(store.results()) >= rows:
+                    return
         time.sleep(0.1)
     raise AssertionError("no episode was stored in 60 s")

@@ -68,6 +68,15 @@ def test_own_policy(tmp_path: Path) -> None:
     assert printed.count("/2  score") == 3
 
 
+def test_train_sb3(tmp_path: Path) -> None:
+    pytest.importorskip("torch")
+    printed = run_example(
+        "train_sb3.py", "--timesteps", "512", "--envs", "8", "--tests", "4", folder=tmp_path
+    )
+    assert re.search(r"arrived: \d+\.\d%", printed)
+    assert (tmp_path / "ppo.zip").is_file()
+
+
 def test_plan_real_ocean(tmp_path: Path) -> None:
     ocean_files = pytest.importorskip("ocean_files")
     currents = ocean_files.write(ocean_files.current_file(), tmp_path / "currents.nc")

@@ -10,7 +10,8 @@ import pytest
 
 from auvgym.evaluation import EpisodeResult, Instance, PolicySpec, Store, Suite, run
 
-ENVIRONMENTS = ["AUVDynamic2D-v0", "AUVDynamic3D-v0", "AUVStatic3D-v0", "AUVThreat3D-v0"]
+ENVIRONMENTS = ["AUVDynamic2D-v0", "AUVDynamic3D-v0", "AUVStatic3D-v0", "AUVThreat3D-v0",
+                "AUVHarbor2D-v0"]  # fmt: skip
 CANARIES = ["hold", "random", "canaries:Spin", "canaries:HugTheWall"]
 # They know nothing, and arrive where nothing happens to be in the way.
 BLIND = ["straight", "lane"]

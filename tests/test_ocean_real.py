@@ -232,3 +232,19 @@ def test_real_worlds(case: str) -> None:
         assert np.sqrt((error**2).mean()) < 0.03
         # Resampling rounds the sharpest fronts off, at half the file's spacing.
         assert error.max() < 0.2
+
+
+@pytest.mark.parametrize("case", ["gulf stream", "gibraltar", "dover strait", "3-D"])
+def test_the_flow_in_real_worlds(case: str) -> None:
+    """Planner iifds gets round land and sea floor, and tuned for time it is the faster."""
+    scenario = auvgym.Scenario.from_dict(quiet(replace(real_request(case), vehicle_speed_mps=2.5)))
+    world = auvgym.World(scenario)
+    options = {"cost": "time", "cost_options": {"collision": "segment"}}
+    plain = auvgym.plan(world, "iifds", **options)
+    tuned = auvgym.plan(
+        world, "iifds-de", objective={"kind": "time"}, max_evaluations=60, **options
+    )
+    for plan in (plain, tuned):
+        assert plan.feasible
+        assert (world.clearance(plan.waypoints) > 0.0).all()
+    assert tuned.cost["time_s"] <= 1.02 * plain.cost["time_s"]

@@ -14,10 +14,18 @@ import pytest
 
 import auvgym
 
-ENVIRONMENTS = ["AUVDynamic2D-v0", "AUVDynamic3D-v0", "AUVStatic3D-v0", "AUVThreat3D-v0"]
+ENVIRONMENTS = [
+    "AUVDynamic2D-v0",
+    "AUVDynamic3D-v0",
+    "AUVHarbor2D-v0",
+    "AUVStatic3D-v0",
+    "AUVThreat3D-v0",
+]
 ROOT = Path(__file__).parents[1]
 HEAVY = [
     "torch",
+    "polars",
+    "onnxruntime",
     "xarray",
     "pygame",
     "plotly",

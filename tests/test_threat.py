@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import dataclasses
 import pickle
 from pathlib import Path
 from typing import Any
@@ -16,9 +17,20 @@ from small_worlds import open_water, sphere, vortices
 import auvgym
 from auvgym import Scenario, policies
 from auvgym.navigation import navigator
-from auvgym.reproduction import Outcome, list_cards, load_card, write_card
+from auvgym.reproduction import (
+    CardError,
+    Outcome,
+    list_cards,
+    load_card,
+    plots,
+    raster_astar,
+    scenes,
+    write_card,
+)
+from auvgym.reproduction.card import check_picture
 from auvgym.reproduction.measures import of_path
 from auvgym.reproduction.runs import execute
+from auvgym.reproduction.threats import flight
 
 Array = npt.NDArray[Any]
 
@@ -281,8 +293,15 @@ def test_measures_by_hand() -> None:
     assert told["hits"] == pytest.approx(101, abs=2)
 
 
-def test_every_card_can_be_written(tmp_path: Path) -> None:
+def test_every_card_can_be_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("matplotlib")
+    # Whole runs again would take minutes: straight lines do here.
+    straight = np.array([[0.0, 0.0, 3e3], [5e3, 6e3, 3e3], [1e4, 1.1e4, 3e3]])
+    flown = flight(auvgym.World("iifds-threats3"), rules="paper", rho=1.0, sigma=1.0, share=0.0)
+    monkeypatch.setattr(scenes, "_LOOKS", 40)
+    monkeypatch.setattr(plots, "_PIXELS_PER_INCH", 40)
+    monkeypatch.setattr(scenes, "_path", lambda run: straight)
+    monkeypatch.setattr(scenes, "_flight", lambda card, case, column: flown)
     for name in list_cards():
         card = load_card(name)
         if card.view != "measures":
@@ -295,3 +314,98 @@ def test_every_card_can_be_written(tmp_path: Path) -> None:
         for case in card.cases:
             assert all(len(figures) == len(card.columns) for figures in case.paper.values())
             assert set(case.paper) <= set(card.measures)
+        for picture in card.pictures:
+            assert f"({name}-{picture.name}.png)" in text
+            assert (tmp_path / f"{name}-{picture.name}.png").stat().st_size > 2_000
+
+
+def test_a_flight_is_told_tick_by_tick() -> None:
+    one = flight(auvgym.World("iifds-threat1"), rules="paper", rho=1.2, share=0.2)
+    assert one.track.shape == (len(one.time_s), 3)
+    assert one.threats.shape == (len(one.time_s), 1, 3)
+    gaps = np.linalg.norm(one.track[:, None] - one.threats, axis=2) - one.radii
+    # Between ticks it may come a little nearer.
+    assert one.measures["threat_km"] == pytest.approx(gaps.min() / 1e3, abs=0.005)
+    assert np.array_equal(one.track[-1], auvgym.World("iifds-threat1").goal)
+
+
+def test_a_picture_must_show_what_there_is() -> None:
+    card = load_card("iifds-astar")
+    wrong = dataclasses.replace(card.pictures[0], columns=("IIFDS",))
+    with pytest.raises(CardError, match=r"unknown column 'IIFDS'"):
+        check_picture(card, wrong)
+    with pytest.raises(CardError, match=r"unknown case"):
+        check_picture(card, dataclasses.replace(card.pictures[0], cases=("twelve columns",)))
+
+
+def test_raster_astar_by_hand_and_its_refusals() -> None:
+    def length(world: auvgym.World, **settings: Any) -> float:
+        steps = np.diff(raster_astar(world, **settings), axis=0)
+        return float(np.linalg.norm(steps, axis=1).sum())
+
+    empty = open_water(3, missions=[{"start_m": [0, 0, 2e3], "goal_m": [2e4, 1e4, 2e3]}])
+    open_sea = auvgym.World(Scenario.from_dict(empty))
+    # 20 by 10 steps of a kilometre: ten diagonals, or none.
+    assert length(open_sea, nodes=21, heuristic="octile") == pytest.approx(1e4 + 1e4 * np.sqrt(2))
+    assert length(open_sea, nodes=21, connectivity=4) == pytest.approx(3e4)
+    columns = auvgym.World("iifds-astar")
+    cut, whole = (length(columns, corner_cutting=cut) for cut in (True, False))
+    assert (cut, whole) == (pytest.approx(16_805, abs=1), pytest.approx(16_864, abs=1))
+    assert length(columns, heuristic="octile") == pytest.approx(15_385, abs=1)
+    for wrong, message in (
+        ({"nodes": 1}, "nodes = 1: must lie in 2 .. 2000"),
+        ({"heuristic": "euclid"}, "unknown heuristic 'euclid'"),
+        ({"connectivity": 6}, "connectivity = 6: must be 4 or 8"),
+    ):
+        with pytest.raises(auvgym.PlanningError, match=message):
+            raster_astar(columns, **wrong)  # type: ignore[arg-type]
+
+
+# --- The options of the navigator ----------------------------------------------------------------
+
+
+def course(turned: tuple[float, float] | None = None, **parameters: Any) -> Array:
+    """Where a navigator goes that has seen a threat cross to the left, and then go otherwise."""
+    pilot = navigator(auvgym.World("iifds-threat1"), [0, 5e3, 2e3], [1e4, 5e3, 2e3], **parameters)
+    here, time, x, y = (0.0, 5e3, 2e3), 0.0, 2e3, 5e3
+    for u, v in [(0.0, 0.9)] * 10 + ([turned] * 20 if turned else []):
+        pilot.see((x, y, 2e3), 700.0, time)
+        velocity, _ = pilot.course(here, time, 6.0)
+        x, y, time = x + 6.0 * u, y + 6.0 * v, time + 6.0
+    return velocity
+
+
+def test_a_latch_keeps_the_side() -> None:
+    settings = {"share": 0.0, "barrier_per_s": 0.0, "process_m2ps3": 1.0}
+    # It comes on, and hardly across: to either side the vehicle goes behind it, at once.
+    barely = (-1.0, -0.1)
+    assert course((-1.0, 0.1), **settings)[1] < 0.0 < course(barely, **settings)[1]
+    assert course(barely, latch_rad=0.5, **settings)[1] < 0.0
+    # What goes right back is beyond the latch.
+    assert course((0.0, -0.9), latch_rad=0.5, **settings)[1] > 0.0
+    for wrong in (-0.1, 1.6):
+        with pytest.raises(auvgym.PlanningError, match=r"latch_rad = .*must lie in 0 \.\."):
+            course(latch_rad=wrong)
+
+
+def test_prediction_process_and_frame_count() -> None:
+    plain = course()
+    for other in (
+        {"prediction": "all"},
+        {"relative": True},
+        {"process_m2ps3": 1.0, "noise_m": 50.0},
+    ):
+        changed = course(**other)
+        assert np.linalg.norm(changed) == pytest.approx(2.0)
+        assert not np.allclose(changed, plain, atol=1e-6), other
+    with pytest.raises(auvgym.PlanningError, match="prediction: unknown variant `first`"):
+        course(prediction="first")
+
+
+def test_a_plan_tells_its_coefficients() -> None:
+    world = auvgym.World("iifds-static-dense")
+    tuned = auvgym.plan(world, "iifds-de", max_evaluations=40, seed=1)
+    assert set(tuned.coefficients) == {"rho", "theta", "sigma", "lambda"}
+    again = auvgym.plan(world, "iifds", retry=False, **tuned.coefficients)
+    assert np.array_equal(again.waypoints, tuned.waypoints)
+    assert auvgym.plan(auvgym.World("lfhh-2d-1"), "astar").coefficients == {}

@@ -380,7 +380,10 @@ def test_members() -> None:
     assert envs.get_attr("dimensions") == (2,) * COUNT
     envs.set_attr("note", ["a", "b", "c", "d", "e"])
     assert envs.get_attr("note") == ("a", "b", "c", "d", "e")
+    assert member.spec.id == "AUVDynamic2D-v0"
     assert not hasattr(member, "nonsense")
+    with pytest.raises(AttributeError, match="of its own"):
+        member.reset()
 
 
 def test_trails_are_kept_when_asked_for() -> None:

@@ -16,7 +16,14 @@ if TYPE_CHECKING:
 
 def reproduce(
     name: Annotated[str, typer.Argument(help="A card: `auvgym list cards`.")],
-    seeds: Annotated[int, typer.Option(min=1, help="Seeds of each cell; the papers have 30.")] = 30,
+    seeds: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            help="Seeds of each cell; as many as the paper has unless given, and 1 where nothing "
+            "is random.",
+        ),
+    ] = None,
     workers: Annotated[int, typer.Option(min=1, help="Processes to run in.")] = 1,
     out: Annotated[
         Path, typer.Option(help="Folder of the card, its plot and the journal of its runs.")
@@ -35,6 +42,7 @@ def reproduce(
     from auvgym.reproduction import Journal, load_card, write_card
 
     card = load_card(name)
+    seeds = card.seeds if seeds is None else seeds
     path = out / "runs" / f"{card.journal}.jsonl"
     if fresh:
         path.unlink(missing_ok=True)

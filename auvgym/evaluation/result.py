@@ -6,7 +6,7 @@ import hashlib
 import json
 import zlib
 from collections.abc import Mapping
-from dataclasses import astuple, dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
@@ -107,9 +107,14 @@ class EpisodeResult:
         return self.outcome in POLICY_FAILURES
 
     @property
+    def values(self) -> tuple[Any, ...]:
+        """The row's figures in the order of its fields."""
+        return tuple(getattr(self, one.name) for one in fields(self))
+
+    @property
     def checksum(self) -> str:
         """16 hex digits over every figure of the row, as it is kept beside it."""
-        parts = [one.hex() if isinstance(one, (bytes, float)) else one for one in astuple(self)]
+        parts = [one.hex() if isinstance(one, (bytes, float)) else one for one in self.values]
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()[:16]
 
     def action_log(self) -> NDArray[np.float32]:

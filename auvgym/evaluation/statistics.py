@@ -207,8 +207,8 @@ def _compare(table: Table, reference: str | None, resamples: int, seed: int) -> 
                 policy_seed=policy_seed,
                 parameters=parameters,
                 instances=count,
-                iqm=_estimate(own, draws, interquartile_mean),
-                improvement=None if itself else _estimate(better, draws, _mean),
+                iqm=_estimate_iqm(own, draws),
+                improvement=None if itself else _estimate_mean(better, draws),
                 p_value=None if itself else p_value,
                 sign="" if itself else _sign(p_value, tests[index].direction),
                 difference=float(difference.mean()),
@@ -220,23 +220,39 @@ def _compare(table: Table, reference: str | None, resamples: int, seed: int) -> 
     return sorted(found, key=lambda one: -one.iqm.value)
 
 
-def _mean(values: Scores) -> Any:
-    return values.mean(axis=-1)
+def _draws(groups: NDArray[np.int64], resamples: int, seed: int) -> Scores:
+    """How often each draw has each instance, (resamples, instances).
 
-
-def _draws(groups: NDArray[np.int64], resamples: int, seed: int) -> NDArray[np.int64]:
-    """(resamples, instances) indices: within each group as many as it has, with replacement."""
+    Within each group as many are drawn as it has, with replacement.
+    """
     random = np.random.default_rng(seed)
-    parts = []
+    count = len(groups)
+    drawn = []
     for group in np.unique(groups):
         members = np.flatnonzero(groups == group)
-        parts.append(members[random.integers(0, len(members), (resamples, len(members)))])
-    return np.concatenate(parts, axis=1)
+        drawn.append(members[random.integers(0, len(members), (resamples, len(members)))])
+    places = np.concatenate(drawn, axis=1) + count * np.arange(resamples)[:, None]
+    counts = np.bincount(places.ravel(), minlength=resamples * count)
+    return counts.reshape(resamples, count).astype(np.float64)
 
 
-def _estimate(values: Scores, draws: NDArray[np.int64], statistic: Any) -> Estimate:
-    low, high = np.percentile(statistic(values[draws]), _PERCENTILES)
-    return Estimate(float(statistic(values)), float(low), float(high))
+def _estimate_iqm(values: Scores, draws: Scores) -> Estimate:
+    """The interquartile mean of each draw, from its counts in the order of the values."""
+    order = np.argsort(values, kind="stable")
+    cut = len(values) // 4
+    within = np.cumsum(draws[:, order], axis=1).clip(cut, len(values) - cut)
+    weights = np.diff(within, axis=1, prepend=cut)
+    drawn = weights @ values[order] / (len(values) - 2 * cut)
+    return _estimate(float(interquartile_mean(values)), drawn)
+
+
+def _estimate_mean(values: Scores, draws: Scores) -> Estimate:
+    return _estimate(float(values.mean()), draws @ values / len(values))
+
+
+def _estimate(value: float, drawn: Scores) -> Estimate:
+    low, high = np.percentile(drawn, _PERCENTILES)
+    return Estimate(value, float(low), float(high))
 
 
 class _Test(NamedTuple):

@@ -8,7 +8,8 @@ import threading
 import typing
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import astuple, fields
+from dataclasses import fields
+from functools import lru_cache
 from pathlib import Path
 from types import TracebackType
 
@@ -105,7 +106,7 @@ class Store:
         with self._explained(), self._database:
             self._database.execute(
                 f"INSERT OR IGNORE INTO episodes ({names}) VALUES ({marks})",
-                (*astuple(result), result.checksum),
+                (*result.values, result.checksum),
             )
 
     def results(self, suite: Suite | None = None) -> list[EpisodeResult]:
@@ -254,6 +255,7 @@ def _open_to_read(path: Path) -> sqlite3.Connection:
     return database
 
 
+@lru_cache(maxsize=1)
 def _columns() -> dict[str, object]:
     return typing.get_type_hints(EpisodeResult)
 

@@ -3,6 +3,7 @@
 from auvgym.reproduction.card import Card, CardError, list_cards, load_card
 from auvgym.reproduction.journal import Journal, JournalError
 from auvgym.reproduction.output import write_card
+from auvgym.reproduction.raster_astar import raster_astar
 from auvgym.reproduction.runner import RunError, run_card
 from auvgym.reproduction.runs import Outcome, Run
 
@@ -16,6 +17,7 @@ __all__ = [
     "RunError",
     "list_cards",
     "load_card",
+    "raster_astar",
     "run_card",
     "write_card",
 ]

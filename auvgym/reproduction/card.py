@@ -19,6 +19,9 @@ else:
 #: What a card shows: costs or seconds case by case, curves over evaluations, costs over parameters,
 #: or whatever was measured, case by case, or how what was measured is distributed.
 View = Literal["costs", "seconds", "curves", "sweeps", "measures", "distributions"]
+PictureKind = Literal["paths", "flights", "distances", "dots", "boxes", "progress"]
+#: Colours that differ for colour-blind readers, too (Okabe and Ito 2008).
+COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#7a6a00", "#000000")
 _FOLDER = resources.files("auvgym.reproduction") / "cards"
 
 
@@ -76,6 +79,41 @@ class Sweep:
 
 
 @dataclass(frozen=True)
+class Picture:
+    """A picture of a card of the view "measures"; without any, that view draws bars.
+
+    Attributes:
+        kind: "paths" or "flights", in 3-D and from above; "distances" to threats against time;
+            "dots", a panel for each measure; "boxes" of the first measure; "progress": the first
+            measure over budgets, which cases labelled "GROUP, N lines" have.
+        title: in words.
+        name: of its file, after the card's.
+        columns, cases: labels of those that are shown; all if empty.
+        measures: for "dots", those that are shown; all if empty.
+    """
+
+    kind: PictureKind
+    title: str
+    name: str
+    columns: tuple[str, ...] = ()
+    cases: tuple[str, ...] = ()
+    measures: tuple[str, ...] = ()
+
+    def shown(self, card: Card) -> list[Column]:
+        """Its columns, in the card's order."""
+        return [one for one in card.columns if not self.columns or one.label in self.columns]
+
+    def rows(self, card: Card) -> list[Case]:
+        """Its cases, in the card's order."""
+        return [one for one in card.cases if not self.cases or one.label in self.cases]
+
+    @staticmethod
+    def colour(index: int) -> str:
+        """The colour of a line."""
+        return COLOURS[index % len(COLOURS)]
+
+
+@dataclass(frozen=True)
 class Card:
     """A table or figure of a paper, to be run again.
 
@@ -90,6 +128,8 @@ class Card:
         cases: rows.
         sweeps: for the view "sweeps".
         measures: for the views "measures" and "distributions", those that are shown.
+        pictures: for the view "measures", what is drawn instead of bars.
+        seeds: of each cell, as the paper has them; 1 where nothing is random.
         why: where and why we and the paper differ, in words (Markdown).
     """
 
@@ -103,6 +143,8 @@ class Card:
     parameters: dict[str, Any] = field(default_factory=dict)
     sweeps: tuple[Sweep, ...] = ()
     measures: tuple[str, ...] = ()
+    pictures: tuple[Picture, ...] = ()
+    seeds: int = 30
     why: str = ""
 
     @property
@@ -149,9 +191,9 @@ def swept(card: Card, sweep: Sweep) -> list[Column]:
     ]
 
 
-def _case(data: dict[str, Any]) -> Case:
+def _tuples(data: dict[str, Any]) -> dict[str, Any]:
     lists = {key: tuple(value) for key, value in data.items() if isinstance(value, list)}
-    return Case(**{**data, **lists})
+    return {**data, **lists}
 
 
 def list_cards() -> list[str]:
@@ -173,13 +215,39 @@ def load_card(name: str) -> Card:
         raise CardError(unknown("card", name, list_cards()))
     data = tomllib.loads((_FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
     columns = tuple(Column(**column) for column in data.pop("columns"))
-    cases = tuple(_case(case) for case in data.pop("cases"))
+    cases = tuple(Case(**_tuples(case)) for case in data.pop("cases"))
     sweeps = tuple(Sweep(**sweep) for sweep in data.pop("sweeps", []))
     measures = tuple(data.pop("measures", []))
-    card = Card(name=name, columns=columns, cases=cases, sweeps=sweeps, measures=measures, **data)
+    pictures = tuple(Picture(**_tuples(picture)) for picture in data.pop("pictures", []))
+    card = Card(
+        name=name,
+        columns=columns,
+        cases=cases,
+        sweeps=sweeps,
+        measures=measures,
+        pictures=pictures,
+        **data,
+    )
     if card.view not in get_args(View):
         raise CardError(f"card {name}: {unknown('view', card.view, list(get_args(View)))}")
+    for picture in card.pictures:
+        check_picture(card, picture)
     for measure in card.measures:
         if measure not in MEASURES:
             raise CardError(f"card {name}: {unknown('measure', measure, list(MEASURES))}")
     return card
+
+
+def check_picture(card: Card, picture: Picture) -> None:
+    """Raises CardError for a kind, column or case that does not exist."""
+    columns = [column.label for column in card.columns]
+    cases = [case.label for case in card.cases]
+    for what, names, known in (
+        ("picture", (picture.kind,), list(get_args(PictureKind))),
+        ("column", picture.columns, columns),
+        ("case", picture.cases, cases),
+        ("measure", picture.measures, list(card.measures)),
+    ):
+        for name in names:
+            if name not in known:
+                raise CardError(f"card {card.name}: {unknown(what, name, known)}")

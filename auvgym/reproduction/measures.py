@@ -33,7 +33,7 @@ MEASURES = {
     "inside_m": "Way inside danger zones (m)",
     "clearance_m": "Least clearance to polygons (m); negative inside",
     "free": "Share of free paths",
-    "step_us": "Time of a step (microseconds)",
+    "step_us": "Time of a step (microseconds, median)",
 }
 #: Paths are looked at this often, m.
 _SPACING_M = 10.0

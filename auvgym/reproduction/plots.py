@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from auvgym._extras import require
-from auvgym.reproduction.card import Card, swept
+from auvgym.reproduction.card import COLOURS, Card, Picture, swept
 from auvgym.reproduction.cells import Cell, cells
 from auvgym.reproduction.harbor_maps import draw_maps
 from auvgym.reproduction.measures import MEASURES
 from auvgym.reproduction.runs import Outcome, Run, checkpoints
+from auvgym.reproduction.scenes import SCENES
+from auvgym.reproduction.summaries import SUMMARIES
 
-#: Colours that differ for colour-blind readers, too (Okabe and Ito 2008).
-COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#7a6a00")
 _ABREAST = 3
 _PIXELS_PER_INCH = 110
+#: Measures that differ by orders of magnitude.
+_LOGARITHMIC = ("step_us",)
 #: A path is feasible below this (LFHH and AFHH).
 _FEASIBLE = 2.0
 
@@ -35,6 +38,8 @@ def draw(card: Card, outcomes: Mapping[Run, Outcome], seeds: int, folder: Path) 
     figures = require("matplotlib.figure", "report")
     if card.view == "sweeps":
         figure = _sweeps(figures, card, outcomes, seeds)
+    elif card.pictures:
+        return [_picture(figures, card, one, outcomes, seeds, folder) for one in card.pictures]
     elif card.view == "distributions":
         figure = _distributions(figures, card, cells(card, card.columns, outcomes, seeds))
     elif card.view == "measures":
@@ -42,15 +47,36 @@ def draw(card: Card, outcomes: Mapping[Run, Outcome], seeds: int, folder: Path) 
     else:
         panel = {"costs": _boxes, "seconds": _bars, "curves": _lines}[card.view]
         figure = _panels(figures, card, cells(card, card.columns, outcomes, seeds), panel)
-    name = f"{card.name}.png"
-    figure.savefig(folder / name, dpi=_PIXELS_PER_INCH, metadata={"Software": None})
+    names = [_save(figure, folder, card.name)]
     if card.protocol == "harbor":
-        maps = draw_maps(figures, card, COLOURS)
-        maps.savefig(
-            folder / f"{card.name}-maps.png", dpi=_PIXELS_PER_INCH, metadata={"Software": None}
+        names.append(_save(draw_maps(figures, card, COLOURS), folder, f"{card.name}-maps"))
+    return names
+
+
+def _save(figure: Any, folder: Path, name: str) -> str:
+    figure.savefig(folder / f"{name}.png", dpi=_PIXELS_PER_INCH, metadata={"Software": None})
+    return f"{name}.png"
+
+
+def _picture(
+    figures: Any,
+    card: Card,
+    picture: Picture,
+    outcomes: Mapping[Run, Outcome],
+    seeds: int,
+    folder: Path,
+) -> str:
+    if picture.kind in SCENES:
+        figure = SCENES[picture.kind](figures, card, picture, outcomes, seeds)
+    else:
+        shown = replace(
+            card,
+            cases=tuple(picture.rows(card)),
+            measures=picture.measures or card.measures,
         )
-        return [name, f"{card.name}-maps.png"]
-    return [name]
+        rows = cells(shown, picture.shown(card), outcomes, seeds)
+        figure = SUMMARIES[picture.kind](figures, shown, picture, rows)
+    return _save(figure, folder, f"{card.name}-{picture.name}")
 
 
 def _panels(figures: Any, card: Card, rows: list[list[Cell]], panel: Any) -> Any:
@@ -87,6 +113,8 @@ def _measures(figures: Any, card: Card, rows: list[list[Cell]]) -> Any:
             known = [i for i, figure in enumerate(paper) if not isinstance(figure, str)]
             axis.plot(places[known], [paper[i] for i in known], "D", color="black", ms=4)
         axis.set_title(f"{MEASURES[measure]}; diamonds: paper", fontsize=9)
+        if measure in _LOGARITHMIC:
+            axis.set_yscale("log")
         labels = [row[0].case.label for row in rows]
         axis.set_xticks(range(len(rows)), labels, rotation=20, ha="right", fontsize=7)
         axis.tick_params(axis="y", labelsize=8)

@@ -10,9 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 import auvgym
+from auvgym._names import unknown
 
 Array = NDArray[np.float64]
+_STRAIGHT = [(0, -1), (-1, 0), (1, 0), (0, 1)]
 _NEIGHBOURS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]
+_CONNECTED = {4: _STRAIGHT, 8: _NEIGHBOURS}
+_HEURISTICS = ("manhattan", "octile")
 
 
 def raster_astar(
@@ -20,23 +24,32 @@ def raster_astar(
     nodes: int = 100,
     heuristic: str = "manhattan",
     cells: bool = False,
-    cut_corners: bool = True,
+    connectivity: int = 8,
+    corner_cutting: bool = True,
 ) -> Array:
-    """A* over nodes x nodes points of the box at the start's depth, with eight neighbours.
+    """A* over nodes x nodes points of the box at the start's depth (Hart et al. 1968).
 
     Args:
         world: the world.
-        nodes: along each side of the box.
+        nodes: along each side of the box, 2 .. 2000.
         heuristic: "manhattan", which overestimates where diagonals are allowed, or "octile".
         cells: whether nodes are the middles of cells instead of points from wall to wall.
-        cut_corners: whether a diagonal step may pass between two nodes of which one is not free.
+        connectivity: 4 or 8 neighbours.
+        corner_cutting: whether a diagonal may pass between two nodes of which one is not free.
 
     Returns:
         (n, 3) m.
 
     Raises:
-        PlanningError: there is no way on the raster.
+        PlanningError: there is no way on the raster; or naming the argument, its value and what
+            was allowed.
     """
+    if not 2 <= nodes <= 2000:
+        raise auvgym.PlanningError(f"nodes = {nodes}: must lie in 2 .. 2000")
+    if heuristic not in _HEURISTICS:
+        raise auvgym.PlanningError(unknown("heuristic", heuristic, list(_HEURISTICS)))
+    if connectivity not in _CONNECTED:
+        raise auvgym.PlanningError(f"connectivity = {connectivity}: must be 4 or 8")
     low, high = world.domain
     inset = (high - low) / (2 * nodes) if cells else np.zeros(3)
     low, high = low + inset, high - inset
@@ -63,12 +76,12 @@ def raster_astar(
         if node in closed:
             continue
         closed.add(node)
-        for i, j in _NEIGHBOURS:
+        for i, j in _CONNECTED[connectivity]:
             other = (node[0] + i, node[1] + j)
             if not (0 <= other[0] < nodes and 0 <= other[1] < nodes and free[other]):
                 continue
-            beside = ((node[0] + i, node[1]), (node[0], node[1] + j))
-            if not (cut_corners or all(free[one] for one in beside)):
+            beside = free[node[0] + i, node[1]] and free[node[0], node[1] + j]
+            if not (corner_cutting or beside):
                 continue
             cost = spent[node] + float(np.hypot(i, j))
             if other not in closed and cost < spent.get(other, np.inf):

@@ -55,8 +55,8 @@ class Outcome:
         cost: total cost of the plan, or the mean over the re-plans of all phases.
         feasible: whether the plan, or every re-plan, breaks no constraint.
         evaluations: fitness evaluations spent.
-        seconds: processor time of the run on this machine, the only figure that differs from run
-            to run; other work on the machine hardly lengthens it.
+        seconds: processor time of the run on this machine, the only figure but the measure
+            ``step_us`` that differs from run to run; other work on the machine hardly lengthens it.
         curve: for "plan" the best cost after :func:`checkpoints` evaluations.
         measures: for "path", "threats" and "harbor" what is measured, by name.
     """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,11 +15,29 @@ from auvgym.navigation import navigator
 Array = NDArray[np.float64]
 #: The paper's time between points, s.
 _TICK_S = 6.0
-_KEYS = ("position_m", "radius_m", "velocity_mps")
 #: Looks at the truth in a tick.
 _LOOKS = 4
 #: A flight this many times as long as the straight one is lost.
 _LONGEST = 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class Flight:
+    """A flight tick by tick.
+
+    Attributes:
+        time_s: (n,) s.
+        track: where the vehicle was, (n, 3) m.
+        threats: where the threats' centres were, (n, threats, 3) m.
+        radii: theirs, (threats,) m.
+        measures: see :data:`auvgym.reproduction.measures.MEASURES`.
+    """
+
+    time_s: Array
+    track: Array
+    threats: Array
+    radii: Array
+    measures: dict[str, float]
 
 
 def fly_among_threats(world: auvgym.World, **parameters: Any) -> dict[str, float]:
@@ -34,39 +53,55 @@ def fly_among_threats(world: auvgym.World, **parameters: Any) -> dict[str, float
     Raises:
         PlanningError: for a wrong parameter.
     """
+    return flight(world, **parameters).measures
+
+
+def flight(world: auvgym.World, **parameters: Any) -> Flight:
+    """The same flight with its track: as :func:`fly_among_threats`."""
     pilot = navigator(world, **parameters)
+    moving = [i for i, one in enumerate(world.snapshot()["obstacles"]) if any(one["velocity_mps"])]
+    radii = np.array([world.snapshot()["obstacles"][i]["radius_m"] for i in moving])
     speed = float(world.scenario.to_dict()["vehicle"]["speed_mps"])
     longest_s = _LONGEST * float(np.linalg.norm(world.goal - world.start)) / speed
-    here, time_s, seconds, steps, hits = world.start, 0.0, 0.0, 0, 0
+    here, time_s, hits = world.start, 0.0, 0
+    seconds: list[float] = []
     length, gap = 0.0, np.inf
+    centres = _places(world, moving)
+    times, track, threats = [time_s], [here], [centres]
     while time_s < longest_s and not np.array_equal(here, world.goal):
         x, y, z = here.tolist()
-        centres, radii, velocities = _threats(world)
         seen = [(place[0], place[1], place[2]) for place in centres.tolist()]
         began = time.perf_counter()
-        for place, radius in zip(seen, radii, strict=True):
+        for place, radius in zip(seen, radii.tolist(), strict=True):
             pilot.see(place, radius, time_s)
         _, there = pilot.course((x, y, z), time_s, _TICK_S)
-        seconds += time.perf_counter() - began
+        seconds.append(time.perf_counter() - began)
+        # Between two ticks threats go straight, or so nearly that it does not show.
+        before = centres
+        world.time_s = time_s + _TICK_S
+        centres = _places(world, moving)
         for part in np.linspace(0.0, 1.0, _LOOKS + 1):
             point = here + part * (there - here)
             world.time_s = time_s + part * _TICK_S
             hits += int(world.clearance(point)[0] <= 0.0)
-            places = centres + part * _TICK_S * velocities
+            places = before + part * (centres - before)
             gap = min(gap, float(np.min(np.linalg.norm(point - places, axis=1) - radii)))
         length += float(np.linalg.norm(there - here))
-        here, time_s, steps = there, time_s + _TICK_S, steps + 1
-    return {
+        here, time_s = there, time_s + _TICK_S
+        times.append(time_s)
+        track.append(here)
+        threats.append(centres)
+    measures = {
         "length_km": length / 1e3,
         "threat_km": gap / 1e3,
         "hits": float(hits),
         "reached": float(np.array_equal(here, world.goal)),
-        "step_us": 1e6 * seconds / max(steps, 1),
+        "step_us": 1e6 * float(np.median(seconds)),
     }
+    return Flight(np.array(times), np.array(track), np.array(threats), radii, measures)
 
 
-def _threats(world: auvgym.World) -> tuple[Array, Array, Array]:
-    """Centres (n, 3) m, radii (n,) m and velocities (n, 3) m/s of the spheres that move."""
-    moving = [one for one in world.snapshot()["obstacles"] if any(one["velocity_mps"])]
-    rows = [np.array([one[key] for one in moving]) for key in _KEYS]
-    return rows[0], rows[1], rows[2]
+def _places(world: auvgym.World, moving: list[int]) -> Array:
+    """Centres (n, 3) m of the obstacles that move."""
+    obstacles = world.snapshot()["obstacles"]
+    return np.array([obstacles[i]["position_m"] for i in moving])

@@ -14,6 +14,9 @@ from auvgym.world import World
 if TYPE_CHECKING:
     from auvgym.vector.environment import AUVVectorEnv
 
+#: What only the whole batch does.
+TOGETHER = frozenset({"reset", "step", "close", "np_random", "np_random_seed"})
+
 
 class Member:
     """Environment ``index`` of a batch: what ``env.unwrapped`` is, without ``reset`` and ``step``.
@@ -29,14 +32,19 @@ class Member:
         self.plan: npt.NDArray[Any] | None = None
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):
-            raise AttributeError(name)
+        if name.startswith("_") or name in TOGETHER:
+            raise AttributeError(f"an environment of a batch has no {name!r} of its own")
         return getattr(self._batch.settings, name)
 
     @property
     def unwrapped(self) -> Member:
         """Itself."""
         return self
+
+    @property
+    def spec(self) -> Any:
+        """How Gymnasium made the batch."""
+        return self._batch.spec
 
     @property
     def episode(self) -> _core.Episode:

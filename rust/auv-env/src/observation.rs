@@ -203,10 +203,14 @@ fn nearest(world: &World, position: Vec3, sonar_range: f64, axes: usize) -> [Opt
     let mut found: [Option<Contact>; NEAREST] = [None; NEAREST];
     for (index, extent) in world.extents().iter().enumerate() {
         let mut offset = sub(world.obstacle_position(index), position);
+        // Most are too far on the map already: nothing more need be known of them.
+        let reach = extent + sonar_range;
+        if offset[0] * offset[0] + offset[1] * offset[1] >= reach * reach {
+            continue;
+        }
         if axes == 2 || world.scenario().obstacles[index].is_flat() {
             offset[2] = 0.0;
         }
-        let reach = extent + sonar_range;
         let square = offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2];
         if square >= reach * reach {
             continue;

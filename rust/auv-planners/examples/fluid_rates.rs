@@ -2,21 +2,14 @@
 //!
 //! `cargo run --release -p auv-planners --example fluid_rates [fields]`
 
-use std::path::Path;
-
-use auv_planners::{Control, Plan, plan};
-use auv_world::math::{Vec3, add_scaled, distance, sub};
-use auv_world::rng::{Purpose, Stream};
-use auv_world::scenario::{Obstacle, Superquadric};
-use auv_world::{Scenario, World};
+#[path = "rates/fields.rs"]
+mod fields;
 
 type Failure = Box<dyn std::error::Error>;
 
 fn main() -> Result<(), Failure> {
     let count: u64 = std::env::args().nth(1).map_or(Ok(400), |text| text.parse())?;
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../auvgym/scenarios/iifds-static-dense.toml");
-    let frame = Scenario::load(&path)?;
-    let worlds: Vec<World> = (0..count).map(|seed| field(&frame, seed)).collect::<Result<_, _>>()?;
+    let worlds = fields::fields(count)?;
     println!("{count} fields of 12 superquadrics, rho and sigma 1 .. 3, theta 0 .. pi");
     println!("step  set                  met a surface  arrived  arrived clear  lines");
     for seconds in [6.0, 30.0] {
@@ -28,66 +21,15 @@ fn main() -> Result<(), Failure> {
             ("with other tries", "", true),
         ] {
             let (mut met, mut arrived, mut clear, mut lines) = (0, 0, 0, 0);
-            for (seed, world) in worlds.iter().enumerate() {
-                let mut stream = Stream::new(seed as u64, Purpose::Planner, 100);
-                let [rho, sigma] = [(); 2].map(|()| stream.uniform(1.0, 3.0));
-                let theta = stream.uniform(0.0, std::f64::consts::PI);
-                let comma = if flow.is_empty() { "" } else { "," };
-                let parameters = format!(
-                    r#"{{"rho": {rho}, "sigma": {sigma}, "theta": {theta}, "retry": {retry}, "cost": "time",
-                        "cost_options": {{"collision": "segment"}},
-                        "flow": {{"step_m": {}, "unit_m": 1000 {comma} {flow}}}}}"#,
-                    2.0 * seconds
-                );
-                let mission = world.mission();
-                let found = plan("iifds", world, mission.start_m, mission.goal_m, 0, &parameters, &Control::none())?;
-                let last = found.waypoints[found.waypoints.len() - 2];
-                let there = distance(last, mission.goal_m) <= 2.0 * seconds;
-                let touched = touches(world, &found);
-                met += usize::from(touched);
-                arrived += usize::from(there);
-                clear += usize::from(there && !touched);
-                lines += found.evaluations;
+            for world in &worlds {
+                let line = fields::line(world, seconds, flow, retry)?;
+                met += usize::from(line.met);
+                arrived += usize::from(line.arrived);
+                clear += usize::from(line.arrived && !line.met);
+                lines += line.lines;
             }
             println!("{seconds:>4}  {name:<21}  {met:>11}  {arrived:>7}  {clear:>13}  {lines:>5}");
         }
     }
     Ok(())
-}
-
-/// Twelve superquadrics of four kinds on the sea floor of 10 x 11 km, not over start or goal.
-fn field(frame: &Scenario, seed: u64) -> Result<World, Failure> {
-    let mut stream = Stream::new(seed, Purpose::Family, 100);
-    let (mission, depth) = (&frame.missions[0], frame.domain.max_m[2]);
-    let mut obstacles = Vec::new();
-    while obstacles.len() < 12 {
-        let position_m = [stream.uniform(0.5e3, 9.5e3), stream.uniform(0.5e3, 10.5e3), depth];
-        let width = stream.uniform(0.8e3, 1.5e3);
-        let semi_axes_m = [width, width * stream.uniform(0.8, 1.0), stream.uniform(1.3e3, 2.4e3)];
-        let exponents = [[2.0; 3], [2.0, 2.0, 8.0], [8.0; 3], [2.0, 2.0, 1.0]][stream.below(4)];
-        let away = |p: Vec3| distance([p[0], p[1], depth], position_m) > 1.5 * width;
-        if away(mission.start_m) && away(mission.goal_m) {
-            let velocity_mps = [0.0; 3];
-            obstacles.push(Obstacle::Superquadric(Superquadric { position_m, semi_axes_m, exponents, velocity_mps }));
-        }
-    }
-    Ok(World::new(Scenario { obstacles, currents: Vec::new(), ..frame.clone() }, seed, 0)?)
-}
-
-/// Whether any of many points of the line lies in an obstacle; the leg to the goal aside, which a line
-/// that did not arrive ends with.
-fn touches(world: &World, plan: &Plan) -> bool {
-    let line = &plan.waypoints[..plan.waypoints.len() - 1];
-    line.windows(2)
-        .any(|leg| (0..8).any(|k| is_solid(world, add_scaled(leg[0], 0.125 * f64::from(k), sub(leg[1], leg[0])))))
-}
-
-fn is_solid(world: &World, point: Vec3) -> bool {
-    world.scenario().obstacles.iter().any(|obstacle| {
-        let Obstacle::Superquadric(shape) = obstacle else { return false };
-        let offset = sub(point, shape.position_m);
-        let scaled: Vec3 = std::array::from_fn(|axis| (offset[axis] / shape.semi_axes_m[axis]).abs());
-        scaled.iter().all(|q| *q <= 1.0)
-            && (0..3).map(|axis| scaled[axis].powf(shape.exponents[axis])).sum::<f64>() < 1.0
-    })
 }

@@ -1,6 +1,5 @@
 //! `Batch`: many episodes at once.
 
-use auv_env::batch::Lane;
 use auv_env::episode::{Measures, Record};
 use auv_env::{Autoreset, Outcome};
 use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -48,10 +47,10 @@ impl Batch {
         drop(view);
         Ok(array)
     }
+}
 
-    fn column<'py, T: Element>(&self, py: Python<'py>, value: impl Fn(&Lane) -> T) -> Bound<'py, PyArray1<T>> {
-        PyArray1::from_iter(py, self.0.lanes().iter().map(value))
-    }
+fn column<'py, R, T: Element>(py: Python<'py>, rows: &[R], value: impl Fn(&R) -> T) -> Bound<'py, PyArray1<T>> {
+    PyArray1::from_iter(py, rows.iter().map(value))
 }
 
 fn missing(index: usize) -> PyErr {
@@ -106,25 +105,28 @@ impl Batch {
         self.expect("actions", actions.len(), self.0.action_len())?;
         self.expect("seeds", seeds.len(), 1)?;
         let observations = self.fill(py, |batch, rows, stop| batch.step(actions, seeds, rows, stop))?;
-        Ok((observations, self.column(py, |lane| lane.reward), self.column(py, |lane| lane.ended)))
+        let lanes = self.0.lanes();
+        Ok((observations, column(py, lanes, |lane| lane.reward), column(py, lanes, |lane| lane.ended)))
     }
 
     /// What is measured, a column each: now, or when the `last` episode ended.
     fn info<'py>(&self, py: Python<'py>, last: bool) -> PyResult<Bound<'py, PyDict>> {
-        let of = |lane: &Lane| -> Measures { if last { lane.last } else { lane.now } };
+        let lanes = self.0.lanes().iter();
+        // Side by side first: environments lie far apart.
+        let rows: Vec<Measures> = lanes.map(|lane| if last { lane.last } else { lane.now }).collect();
         let info = PyDict::new(py);
-        info.set_item("time_s", self.column(py, |lane| of(lane).time_s))?;
-        info.set_item("energy_j", self.column(py, |lane| of(lane).energy_j))?;
-        info.set_item("path_length_m", self.column(py, |lane| of(lane).path_length_m))?;
-        info.set_item("min_clearance_m", self.column(py, |lane| of(lane).min_clearance_m))?;
-        info.set_item("distance_to_goal_m", self.column(py, |lane| of(lane).distance_to_goal_m))?;
-        info.set_item("evaluations", self.column(py, |lane| of(lane).evaluations as i64))?;
-        info.set_item("replans", self.column(py, |lane| of(lane).replans as i64))?;
-        info.set_item("map_changes", self.column(py, |lane| of(lane).map_changes as i64))?;
-        info.set_item("map_changed", self.column(py, |lane| of(lane).map_changed))?;
-        info.set_item("is_success", self.column(py, |lane| of(lane).outcome == Outcome::Goal))?;
-        let code = |lane: &Lane| OUTCOMES.iter().position(|outcome| *outcome == of(lane).outcome).unwrap_or(0) as i64;
-        info.set_item("outcome", self.column(py, code))?;
+        info.set_item("time_s", column(py, &rows, |row| row.time_s))?;
+        info.set_item("energy_j", column(py, &rows, |row| row.energy_j))?;
+        info.set_item("path_length_m", column(py, &rows, |row| row.path_length_m))?;
+        info.set_item("min_clearance_m", column(py, &rows, |row| row.min_clearance_m))?;
+        info.set_item("distance_to_goal_m", column(py, &rows, |row| row.distance_to_goal_m))?;
+        info.set_item("evaluations", column(py, &rows, |row| row.evaluations as i64))?;
+        info.set_item("replans", column(py, &rows, |row| row.replans as i64))?;
+        info.set_item("map_changes", column(py, &rows, |row| row.map_changes as i64))?;
+        info.set_item("map_changed", column(py, &rows, |row| row.map_changed))?;
+        info.set_item("is_success", column(py, &rows, |row| row.outcome == Outcome::Goal))?;
+        let code = |row: &Measures| OUTCOMES.iter().position(|outcome| *outcome == row.outcome).unwrap_or(0) as i64;
+        info.set_item("outcome", column(py, &rows, code))?;
         Ok(info)
     }
 

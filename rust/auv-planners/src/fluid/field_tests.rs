@@ -169,3 +169,52 @@ fn overlapping_spheres_become_one() {
     field.look(seam);
     assert_eq!(field.entries.len(), 2);
 }
+
+/// Inside an obstacle the flow leads out, from the very centre upwards.
+#[test]
+fn inside_an_obstacle_the_flow_leads_out() {
+    let mut stream = Stream::new(5, Purpose::Planner, 0);
+    for i in 0..500 {
+        let exponents = [[2.0; 3], [2.0, 2.0, 8.0], [8.0; 3], [2.0, 2.0, 1.0]][i % 4];
+        let subject = body([0.0; 3], [1.0, 0.7, 1.4], exponents, [1.0, 2.0, 0.3]);
+        let point = [(); 3].map(|()| stream.uniform(-300.0, 300.0));
+        let gradient = subject.shape.contact(point).gradient;
+        let mut field = Field::new(vec![subject], Modulation { escape: true, ..LITERAL }, false);
+        let found = field.velocity(point, place([9.0, 0.0, 0.0]), [2.0, 0.3, -0.1]);
+        assert!(dot(found, gradient) > 0.0);
+        let up = field.velocity([0.0; 3], place([9.0, 0.0, 0.0]), [2.0, 0.0, 0.0]);
+        // The tip of a cone's kink counts as its lower half.
+        assert!(up[2] < 0.0 || exponents[2] == 1.0);
+    }
+}
+
+/// Fig. 4: a uniform current with a vertical part, and a sphere that one passes over or beside: least
+/// clearances (km) of an implementation of its own.
+#[test]
+fn a_uniform_current_changes_the_clearance() {
+    let clearance = |theta: f64, lambda: f64| {
+        let sphere = body([5.0, 0.0, 1.0], [1.0; 3], [2.0; 3], [1.0, 1.0, theta]);
+        let mut field = Field::new(vec![sphere], LITERAL, false);
+        let (goal, mut here, mut least) = (place([10.0, 0.0, 1.0]), place([0.0, 0.0, 1.0]), f64::INFINITY);
+        // V = (-0.25, 0.25, -0.5) m/s with heights, V0 = 1.5 m/s, 2 m/s over ground, 6 s.
+        let current = [-0.25, 0.25, 0.5];
+        for _ in 0..5000 {
+            let to_goal = sub(goal, here);
+            let left = norm(to_goal);
+            if left < 12.0 {
+                break;
+            }
+            let flow = std::array::from_fn(|axis| lambda * 1.5 * to_goal[axis] / left + (1.0 - lambda) * current[axis]);
+            let velocity = field.velocity(here, goal, flow);
+            here = add_scaled(here, 12.0 / norm(velocity), velocity);
+            least = least.min(field.bodies()[0].shape.distance(here) / KM);
+        }
+        least
+    };
+    for (theta, lambda, expected) in
+        [(FRAC_PI_2, 1.0, 0.798), (FRAC_PI_2, 0.5, 0.535), (0.0, 1.0, 0.812), (0.0, 0.5, 1.083)]
+    {
+        let found = clearance(theta, lambda);
+        assert!((found - expected).abs() < 2e-3, "{theta} {lambda}: {found} {expected}");
+    }
+}

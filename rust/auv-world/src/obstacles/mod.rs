@@ -62,13 +62,15 @@ fn prism_distance(outline: f64, top: f64, bottom: f64, depth: f64) -> f64 {
 }
 
 /// A beam has met a surface when it is nearer than this (m, and as a fraction of its longest range).
-const TOUCH: f64 = 1e-3;
+pub(crate) const TOUCH: f64 = 1e-3;
+/// It stands still after so many steps.
+pub(crate) const STEPS: usize = 256;
 
 /// Walks along a beam by a clearance that never overestimates, until it touches.
 pub(crate) fn march(origin: Vec3, direction: Vec3, longest: f64, clearance: impl Fn(Vec3) -> f64) -> f64 {
     let touch = TOUCH * longest;
     let mut range = 0.0;
-    for _ in 0..256 {
+    for _ in 0..STEPS {
         let free = clearance(add_scaled(origin, range, direction));
         if free < touch {
             return range;

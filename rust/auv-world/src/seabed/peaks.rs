@@ -9,23 +9,28 @@ use wide::f64x4;
 
 use crate::lanes::{Column, exp as exp4, least};
 use crate::math::{Vec3, exp};
-use crate::obstacles::Beams;
+use crate::obstacles::{Beams, STEPS, TOUCH};
 use crate::scenario::{Peak, Peaks};
 
 /// At most exp(u^2 / 2), without an exponential: the start of its series, and 1 for u < 0.
 #[inline(always)]
 fn falls_by(u: f64x4) -> f64x4 {
     let u = u.fast_max(f64x4::ZERO);
-    let s = f64x4::HALF * u * u;
+    series(f64x4::HALF * u * u)
+}
+
+/// At most exp(s) for s not negative.
+#[inline(always)]
+fn series(s: f64x4) -> f64x4 {
     f64x4::ONE + s * (f64x4::ONE + s * (f64x4::HALF + s * f64x4::splat(1.0 / 6.0)))
 }
 
 /// A lower bound of the distance to each of four peaks, or anything not less than `nearest` where they are
-/// farther than that, from a point `above` the flat floor at `u`; minus the gap inside.
+/// farther than that, from points `above` the flat floor at `u`; minus the gap inside.
 #[inline]
-fn distance_bound(height: f64x4, steepness: f64x4, u: f64x4, above: f64, nearest: f64) -> f64x4 {
+fn distance_bound(height: f64x4, steepness: f64x4, u: f64x4, above: f64x4, nearest: f64) -> f64x4 {
     let here = height * exp4(f64x4::splat(-0.5) * u * u);
-    let gap = f64x4::splat(above) - here;
+    let gap = above - here;
     let low = (u - steepness * gap.fast_min(f64x4::splat(nearest.max(0.0)))).fast_max(f64x4::ZERO);
     // |d/du| of a peak is greatest at u = 1: there if it lies in [low, u], else at the nearer end.
     let steepest = low.fast_max(f64x4::ONE.fast_min(u));
@@ -109,7 +114,7 @@ impl PeakFloor {
             let room = f64x4::splat((above - best).max(0.0));
             let rises = (room * falls_by(u - steepness * f64x4::splat(best.max(0.0)))).simd_lt(height);
             if rises.any() {
-                best = least(distance_bound(height, steepness, u, above, best), best);
+                best = least(distance_bound(height, steepness, u, f64x4::splat(above), best), best);
             }
         }
         best
@@ -144,19 +149,37 @@ impl PeakFloor {
             let closest = (-q1 / q2.fast_max(f64x4::splat(1e-30))).fast_max(f64x4::ZERO).fast_min(range);
             let least = (q0 + closest * (q1 + q1 + q2 * closest)).fast_max(f64x4::ZERO);
             let lowest = above.fast_min(above - range * beams[2]);
+            // Most beams pass far too high for an exponential; by more than its rounding.
+            let passes = (lowest * series(f64x4::HALF * least)).simd_ge(f64x4::splat(self.height[i] * (1.0 + 1e-9)));
+            if passes.all() {
+                continue;
+            }
             let rises = (f64x4::splat(self.height[i]) * exp4(f64x4::splat(-0.5) * least)).simd_gt(lowest);
-            let mut left = rises.to_bitmask();
-            while left != 0 {
-                let lane = left.trailing_zeros() as usize;
-                left &= left - 1;
-                let direction = beams.map(|axis| axis.to_array()[lane]);
-                let mut ranges = range.to_array();
-                ranges[lane] = crate::obstacles::march(origin, direction, ranges[lane], |point| {
-                    let u = self.u2(i, point[0], point[1]).sqrt();
-                    let [height, steepness, u] = [self.height[i], self.steepness[i], u].map(f64x4::splat);
-                    distance_bound(height, steepness, u, self.floor_depth - point[2], f64::INFINITY).to_array()[0]
-                });
-                range = f64x4::new(ranges);
+            if rises.any() {
+                range = self.march(i, origin, beams, range, rises);
+            }
+        }
+        range
+    }
+
+    /// Walks along those of four beams that `going` says until each touches peak `i` or has run its
+    /// `longest`, all at once: each as [`crate::obstacles::march`] would alone.
+    fn march(&self, i: usize, origin: Vec3, beams: &Beams, longest: f64x4, mut going: f64x4) -> f64x4 {
+        let touch = f64x4::splat(TOUCH) * longest;
+        let [x, y, height, steepness] = [self.x[i], self.y[i], self.height[i], self.steepness[i]].map(f64x4::splat);
+        let (ax, ay) = (f64x4::splat(self.along_x[i]), f64x4::splat(self.along_y[i]));
+        let (floor, at) = (f64x4::splat(self.floor_depth), origin.map(f64x4::splat));
+        let mut range = going.select(f64x4::ZERO, longest);
+        for _ in 0..STEPS {
+            let [px, py, pz]: Beams = std::array::from_fn(|axis| at[axis] + range * beams[axis]);
+            let (dx, dy) = (px - x, py - y);
+            let u = (ax * dx * dx + ay * dy * dy).sqrt();
+            let free = distance_bound(height, steepness, u, floor - pz, f64::INFINITY);
+            going &= free.simd_ge(touch);
+            range = going.select((range + free).fast_min(longest), range);
+            going &= range.simd_lt(longest);
+            if !going.any() {
+                break;
             }
         }
         range
@@ -194,6 +217,18 @@ mod tests {
         }
     }
 
+    /// The bound that spares an exponential never overrules it.
+    #[test]
+    fn what_passes_does_not_rise() {
+        for i in 0..20_000 {
+            let s = f64x4::splat(0.0005 * f64::from(i));
+            for lowest in [1.0 - 1e-15, 1.0, 1.0 + 1e-15, 1.0 + 2e-9].map(|off| exp4(-s) * f64x4::splat(off)) {
+                let passes = (lowest * series(s)).simd_ge(f64x4::splat(1.0 + 1e-9));
+                assert!(!(passes & exp4(-s).simd_gt(lowest)).any());
+            }
+        }
+    }
+
     #[test]
     fn summit_and_flat() {
         let floor = floor();
@@ -219,6 +254,33 @@ mod tests {
                 prop_assert!(clearance <= crate::math::distance(point, surface) + 1e-6);
                 let bounded = floor.clearance(point, 700.0);
                 prop_assert!(bounded <= 700.0 && bounded <= crate::math::distance(point, surface) + 1e-6);
+            }
+        }
+
+        /// Four beams that march together end where each would alone.
+        #[test]
+        fn beams_march_alike(
+            p in (0.0..10e3_f64, 0.0..12e3_f64, 0.0..20e3_f64),
+            d in prop::array::uniform4(prop::array::uniform3(-1.0..1.0_f64)),
+            longest in prop::array::uniform4(1.0..6e3_f64),
+            going in 0..16_u32,
+        ) {
+            let (floor, origin) = (floor(), [p.0, p.1, p.2]);
+            let directions = d.map(|d| d.map(|v| v / crate::math::norm(d).max(1e-9)));
+            let beams: Beams = std::array::from_fn(|axis| f64x4::new(directions.map(|d| d[axis])));
+            let chosen = f64x4::new(std::array::from_fn(|lane| f64::from(going >> lane & 1))).simd_gt(f64x4::ZERO);
+            for i in 0..3 {
+                let together = floor.march(i, origin, &beams, f64x4::new(longest), chosen).to_array();
+                for lane in 0..4 {
+                    let alone = crate::obstacles::march(origin, directions[lane], longest[lane], |point| {
+                        let u = floor.u2(i, point[0], point[1]).sqrt();
+                        let [height, steepness, u] = [floor.height[i], floor.steepness[i], u].map(f64x4::splat);
+                        let above = f64x4::splat(floor.floor_depth - point[2]);
+                        distance_bound(height, steepness, u, above, f64::INFINITY).to_array()[0]
+                    });
+                    let expected = if going >> lane & 1 == 1 { alone } else { longest[lane] };
+                    prop_assert_eq!(together[lane].to_bits(), expected.to_bits());
+                }
             }
         }
 
