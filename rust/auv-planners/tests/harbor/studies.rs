@@ -95,12 +95,8 @@ fn means_of_2000_seeds(map: usize, known: [f64; 4]) {
     let chart = MAPS[map].chart();
     let route = Routes::new(&chart, START, GOAL).unwrap().shortest().unwrap();
     let corridor = Corridor::new(&chart, &route, [START, GOAL], false, Objective::Length, drift());
-    let readings = [
-        (Inertia::Linear, 0.63),
-        (Inertia::Printed, 0.63),
-        (Inertia::Reinforced, -0.63),
-        (Inertia::Reinforced, 0.63),
-    ];
+    let readings =
+        [(Inertia::Linear, 0.63), (Inertia::Printed, 0.63), (Inertia::Reinforced, -0.63), (Inertia::Reinforced, 0.63)];
     for ((inertia, offset), known) in readings.into_iter().zip(known) {
         let lengths = ends(&corridor, Rules { offset, ..rules(inertia, Bounds::Clamp) }, 2000);
         let mean = lengths.iter().sum::<f64>() / 2000.0;
