@@ -135,7 +135,6 @@ impl Settings {
             barrier_per_s: self.barrier_per_s.unwrap_or(usual.barrier_per_s),
             noise: Noise { measurement_m: self.noise_m, process: self.process_m2ps3, ..usual.noise },
             still: self.still(),
-            ..usual
         };
         let flow = Flow { options, virtual_speed_mps: self.virtual_speed_mps, ..Flow::default() };
         Ok(Navigator::new(world, [start, goal], &[], self.lambda, &flow, rules))
