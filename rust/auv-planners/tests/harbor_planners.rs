@@ -181,7 +181,7 @@ fn no_way_is_an_answer() {
         assert!(!found.feasible, "{planner}");
         check(&world, &found, mission.start_m, mission.goal_m, Cost::Lfhh);
         let report = found.harbor.unwrap();
-        assert_eq!((report.gap_m, report.barriers), (None, vec![5]));
+        assert_eq!((report.gap_m, report.barriers), (None, vec![5]), "{planner}");
     }
 }
 

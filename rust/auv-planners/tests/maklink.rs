@@ -134,6 +134,18 @@ fn zones_end_at_the_walls() {
 }
 
 #[test]
+fn no_way_leads_along_a_wall_through_a_zone() {
+    // From the upper wall halfway down: the shortest path passes below.
+    let pier = vec![rectangle([90.0, 60.0], [20.0, 145.0])];
+    let chart = maps::chart(&pier);
+    assert!(!chart.is_free([50.0, 200.0], [150.0, 200.0]) && !chart.is_free([100.0, 200.0], [10.0, 200.0]));
+    assert!(chart.is_free([10.0, 200.0], [80.0, 200.0]) && chart.is_free([10.0, 0.0], [190.0, 0.0]));
+    let [_, tight, best] = lengths(&pier, [50.0, 195.0], [150.0, 195.0]).unwrap();
+    let below = length(&[[50.0, 195.0], [88.125, 58.125], [111.875, 58.125], [150.0, 195.0]]);
+    assert!((tight - below).abs() < 1e-6 && (best - below).abs() < 1e-6, "{tight} {best} {below}");
+}
+
+#[test]
 fn start_or_goal_in_a_zone_is_named() {
     let polygons = vec![rectangle([100.0, 100.0], [20.0, 20.0]), rectangle([150.0, 80.0], [8.5, 20.0])];
     let error = lengths(&polygons, START, GOAL).unwrap_err();

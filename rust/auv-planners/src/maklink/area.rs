@@ -47,6 +47,13 @@ impl Area {
         (0..2).any(|axis| point[axis] == self.low[axis] || point[axis] == self.high[axis])
     }
 
+    /// The axis along which a wall runs that two points share.
+    #[inline]
+    pub fn shared_wall(&self, a: Vec2, b: Vec2) -> Option<usize> {
+        let on = |across: usize| a[across] == b[across] && [self.low[across], self.high[across]].contains(&a[across]);
+        (0..2).find(|&along| on(1 - along))
+    }
+
     /// The nearest points of the four walls.
     pub fn feet(&self, point: Vec2) -> [Vec2; 4] {
         let ([x0, y0], [x1, y1], [x, y]) = (self.low, self.high, point);

@@ -119,7 +119,8 @@ impl Chart {
     /// Whether a segment between points of the area enters no zone.
     #[inline]
     pub fn is_free(&self, from: Vec2, to: Vec2) -> bool {
-        !self.zones.iter().any(|zone| zone.meets(from, to))
+        let wall = self.area.shared_wall(from, to);
+        !self.zones.iter().any(|zone| zone.meets(from, to) || wall.is_some_and(|along| zone.bars_wall(from, to, along)))
     }
 
     /// Fails unless a point is in the area and in no zone.

@@ -96,6 +96,18 @@ impl Zone {
         from < to
     }
 
+    /// Whether its edge on a wall lies between two points of that wall, which runs along an axis. The edge is where the
+    /// zone was cut off, and no way past it.
+    pub fn bars_wall(&self, a: Vec2, b: Vec2, along: usize) -> bool {
+        let on_wall = self.corners.iter().filter(|corner| corner[1 - along] == a[1 - along]);
+        let reach = on_wall.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], corner| {
+            [low.min(corner[along]), high.max(corner[along])]
+        });
+        let from = reach[0].max(a[along].min(b[along]));
+        let to = reach[1].min(a[along].max(b[along]));
+        to - from > SKIN
+    }
+
     /// The nearest points of its edges to a point inside, nearest first; those at the walls lead nowhere.
     pub fn ways_out(&self, point: Vec2, area: &Area) -> Vec<Vec2> {
         let n = self.corners.len();
