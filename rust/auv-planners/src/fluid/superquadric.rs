@@ -151,8 +151,13 @@ impl Superquadric {
         let mut scale = if goal > 0.0 { goal / slowest } else { 0.0 };
         for _ in 0..MOST_STEPS {
             let (mut sum, mut slope) = (0.0, 0.0);
+            let mut growth = exp(self.exponents[0] * scale);
             for axis in 0..3 {
-                let term = terms[axis] * exp(self.exponents[axis] * scale);
+                // Cylinders and cones are round: two axes share their exponent.
+                if axis > 0 && self.exponents[axis] != self.exponents[axis - 1] {
+                    growth = exp(self.exponents[axis] * scale);
+                }
+                let term = terms[axis] * growth;
                 sum += term;
                 slope += self.exponents[axis] * term;
             }

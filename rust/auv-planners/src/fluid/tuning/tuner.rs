@@ -52,6 +52,8 @@ pub struct Tuner<'a> {
     target: f64,
     rest: Rest,
     path: Vec<Vec3>,
+    /// The best line, while it is not judged yet.
+    better: Vec<Vec3>,
     held: Held,
     best: f64,
     genes: Genes,
@@ -95,6 +97,7 @@ impl<'a> Tuner<'a> {
             target: common.target_cost.unwrap_or(f64::NEG_INFINITY),
             rest,
             path: Vec::new(),
+            better: Vec::new(),
             held: Held::default(),
             best: f64::INFINITY,
             genes: [0.0; 4],
@@ -126,16 +129,29 @@ impl<'a> Tuner<'a> {
         let arrives = ending == Ending::Reached && self.is_outside();
         let value = if arrives { self.objective.value(self.world, &self.path) } else { f64::INFINITY };
         self.held.count(1);
-        // Among lines that are worth nothing the cheapest is held.
-        if value < self.best || self.best == f64::INFINITY {
+        if value < self.best {
+            // Judged when the generation ends: it may not be the best until then, and judging takes longer than drawing.
+            (self.best, self.genes) = (value, *genes);
+            std::mem::swap(&mut self.path, &mut self.better);
+        } else if self.best == f64::INFINITY {
+            // Among lines that are worth nothing the cheapest is held.
             let (cost, clear) = (self.judge.cost(&self.path), self.judge.is_clear(&self.path));
             let better = if clear == self.held.is_clear() { cost.total < self.held.total() } else { clear };
-            if value < self.best || better || evaluations == 0 {
-                (self.best, self.genes) = (value, *genes);
+            if better || evaluations == 0 {
+                self.genes = *genes;
                 self.held.hold(&self.path, cost, clear);
             }
         }
         Some(value)
+    }
+
+    /// Judges the best line and holds it, unless it is held already.
+    fn hold_best(&mut self) {
+        if !self.better.is_empty() {
+            let (cost, clear) = (self.judge.cost(&self.better), self.judge.is_clear(&self.better));
+            self.held.hold(&self.better, cost, clear);
+            self.better.clear();
+        }
     }
 
     /// Whether all points of the line and the middles between them lie outside (eq. 24).
@@ -147,6 +163,7 @@ impl<'a> Tuner<'a> {
 
     /// Ends a generation; says whether the search is done.
     pub fn end_generation(&mut self) -> bool {
+        self.hold_best();
         self.held.note();
         let evaluations = self.held.evaluations();
         self.idle = if evaluations > self.counted { 0 } else { self.idle + 1 };
@@ -163,7 +180,8 @@ impl<'a> Tuner<'a> {
     ///
     /// # Errors
     /// [`PlanError`] if nothing was evaluated.
-    pub fn finish(self, planner: &str) -> Result<Tuned, PlanError> {
+    pub fn finish(mut self, planner: &str) -> Result<Tuned, PlanError> {
+        self.hold_best();
         let nothing = || PlanError::parameter("max_evaluations", self.limit, "at least 1");
         let mut plan = self.held.finish(planner, self.interrupted).ok_or_else(nothing)?;
         plan.coefficients = GENES.into_iter().zip(self.genes).collect();
