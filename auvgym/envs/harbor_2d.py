@@ -100,3 +100,4 @@ class AUVHarbor2DEnv(AUVEnv):
 
     dimensions = 2
     family = "harbor"
+    usual_planning_s = 5.0

@@ -97,3 +97,4 @@ class AUVStatic3DEnv(AUVEnv):
 
     dimensions = 3
     family = "afhh"
+    usual_planning_s = 2.4

@@ -108,3 +108,4 @@ class AUVThreat3DEnv(AUVEnv):
 
     dimensions = 3
     family = "iifds"
+    usual_planning_s = 150.0
