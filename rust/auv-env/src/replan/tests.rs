@@ -50,25 +50,27 @@ fn planning_takes_exactly_its_time_and_is_counted() {
 #[test]
 fn a_window_leaves_the_rest_of_the_plan() {
     let mut episode = source("lfhh-3d", DELAY).episode(1).unwrap();
-    for _ in 0..12 {
+    for _ in 0..4 {
         act(&mut episode, 0.0);
     }
-    let old = episode.pilot().unwrap().course.clone();
-    let position = episode.state().position;
-    let whole_m = episode.limits().distance_m;
-    let mut beyond = Vec::new();
-    for window in [Window::Short, Window::Long, Window::Full] {
+    let (old, position) = (episode.pilot().unwrap().course.clone(), episode.state().position);
+    let (whole_m, mut way) = (episode.limits().distance_m, Way::default());
+    let mut far = 0.0;
+    for (window, part) in [(Window::Short, 0.2), (Window::Long, 0.5)] {
+        let (place, beyond) = old.window(position, part * whole_m, episode.world(), &mut way).expect("a place");
+        assert!(episode.world().clearance(place) >= 300.0);
         let mut pilot = episode.pilot().unwrap().clone();
         let draft = pilot.draft(episode.world(), position, 0.0, window, &Control::none()).unwrap();
-        let new = draft.course.expect("a way").waypoints;
-        assert_eq!(new[0], position);
-        assert_eq!(new.last(), old.waypoints.last());
-        let kept = new.iter().rev().zip(old.waypoints.iter().rev()).take_while(|(a, b)| a == b).count();
-        let parted = auv_world::math::distance(position, old.waypoints[old.waypoints.len() - kept]);
-        beyond.push((kept, parted));
+        let new = draft.course.expect("a way");
+        assert_eq!(new.waypoints[0], position);
+        let until = new.waypoints.iter().position(|point| *point == place).expect("the window's end is on the way");
+        assert_eq!(new.waypoints[until + 1..], old.waypoints[beyond..]);
+        let parted = auv_world::math::distance(position, place);
+        assert!(parted > far && parted > 0.8 * part * whole_m && draft.seconds == [120.0, 300.0][window.index()]);
+        far = parted;
     }
-    assert!(beyond[0].0 >= beyond[1].0 && beyond[1].0 >= beyond[2].0, "{beyond:?}");
-    assert!(beyond[0].1 > 0.1 * whole_m, "{beyond:?}");
+    // A window that reaches the goal is the full one.
+    assert_eq!(old.window(position, 2.0 * whole_m, episode.world(), &mut way), None);
 }
 
 #[test]
@@ -111,14 +113,15 @@ fn wrong_actions_and_settings_are_named() {
         assert!(matches!(episode.act(wrong, &Control::none()), Err(EnvError::Action { .. })));
     }
     let refuse = |settings: Settings| {
-        let source = Source::family("lfhh-2d", Parameters::default()).unwrap();
+        let source = Source::family("lfhh-3d", Parameters::default()).unwrap();
         source.replanning(settings, &Control::none()).unwrap_err().to_string()
     };
     assert!(refuse(Settings { windows: [0.5, 0.2], ..settings(DELAY) }).starts_with("windows = [0.5, 0.2]"));
     assert!(refuse(settings(Delay::Fixed([0.0, -1.0, 0.0]))).starts_with("planning_s = -1"));
     assert!(refuse(settings(Delay::PerEvaluation(f64::NAN))).starts_with("seconds_per_evaluation"));
     assert!(refuse(Settings { planner: "astr".into(), ..settings(DELAY) }).contains("did you mean \"astar\"?"));
-    assert!(refuse(Settings { planner: "visibility".into(), ..settings(DELAY) }).starts_with("world"));
+    let visibility = Settings { planner: "visibility".into(), parameters: String::new(), ..settings(DELAY) };
+    assert!(refuse(visibility).contains("MAKLINK planners know no"));
     assert!(refuse(Settings { parameters: r#"{"spacing": 1}"#.into(), ..settings(DELAY) }).contains("spacing_m"));
 }
 
