@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import os
 import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -253,6 +254,20 @@ def test_a_conflict_is_where_the_plan_meets_something_solid() -> None:
     assert found > 3
 
 
+@pytest.mark.parametrize("env_id", ["AUVDynamic2D-v0", "AUVDynamic3D-v0"])
+def test_the_page_has_every_block_of_the_plan(env_id: str) -> None:
+    core = make(env_id).unwrapped
+    page = (Path(__file__).parents[1] / "docs" / "environments.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| ([\d-]+) \| ([\d-]+) \| (\w+) \| (\S+) \.\. (\S+) \|", page, re.MULTILINE)
+    told = {row[2]: row[core.dimensions - 2].split("-") for row in rows}
+    layout = {name: where for name, where in core.observation_layout.items() if name in told}
+    assert list(layout) == list(core.observation_layout)[-len(told) :]
+    assert {name: slice(int(told[name][0]), int(told[name][-1]) + 1) for name in told} == layout
+    for row in rows:
+        assert np.all(core.observation_space.low[layout[row[2]]] == float(row[3]))
+        assert np.all(core.observation_space.high[layout[row[2]]] == float(row[4]))
+
+
 # --- triggers -------------------------------------------------------------------------------------
 
 
@@ -290,11 +305,13 @@ def test_on_predicted_collision() -> None:
         replans.append(sum(info["replans"] for info in infos))
         arrived.append(sum(info["outcome"] != "collision" for info in infos))
     assert replans[0] < replans[1] <= replans[2]
-    assert arrived[0] < arrived[1] and arrived[2] >= 11
+    assert arrived[0] < arrived[1]
+    assert arrived[2] >= 11
 
 
 def test_they_are_named_and_refuse_what_they_cannot() -> None:
-    assert policies.list_triggers() == ["never", "every-change", "every-k", "on-predicted-collision"]
+    known = ["never", "every-change", "every-k", "on-predicted-collision"]
+    assert policies.list_triggers() == known
     for name in policies.list_triggers():
         assert isinstance(policies.make(name), policies.Policy)
     for name, wrong in [
@@ -366,7 +383,8 @@ def test_sb3_takes_it() -> None:
         observations, _, _, infos = envs.step(drawn(step, 4))
         assert observations.shape == (4, 85)
         ended += [info for info in infos if info]
-    assert ended and all(info["planning_s"] >= 0.0 for info in ended)
+    assert ended
+    assert all(info["planning_s"] >= 0.0 for info in ended)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="sends SIGINT")

@@ -69,7 +69,11 @@ def replanning(
     Args:
         source: the environment's episodes.
         usual_s: what planning to the goal takes by default, s.
-        planner, planner_parameters, windows, planning_s, seconds_per_evaluation: the keywords.
+        planner: who plans; by default A* on the grid of the policy ``astar-replan``.
+        planner_parameters: the planner's own.
+        windows: how far a short and a long window reach, in parts of the start-goal distance.
+        planning_s: what planning to the goal takes, s, or one number for each window.
+        seconds_per_evaluation: what an evaluation takes instead, s.
 
     Raises:
         PlanningError: naming the keyword, its value and what was allowed.

@@ -31,8 +31,9 @@ Array = npt.NDArray[np.float64]
 
 
 class AUVEnv(gymnasium.Env[Observation, Choice]):
-    """An AUV that is steered from waypoint to waypoint, or flies a plan that is made anew when asked
-    to (``action_mode="replan"``); base of the registered environments.
+    """An AUV that is steered from waypoint to waypoint; base of the registered environments.
+
+    With ``action_mode="replan"`` a planner's path is flown, and actions say when to plan anew.
 
     Subclasses set ``dimensions`` and ``family``. What an episode is, the observation and the
     reward are decided in the engine; this class only speaks Gymnasium.
@@ -82,7 +83,7 @@ class AUVEnv(gymnasium.Env[Observation, Choice]):
             raise TypeError(unknown("setting", next(iter(unknown_settings)), known))
         if action_mode not in ("waypoint", "replan"):
             raise ValueError(f"action_mode = {action_mode!r}: must be 'waypoint' or 'replan'")
-        planning = {
+        planning: dict[str, Any] = {
             "planner": planner,
             "planner_parameters": planner_parameters,
             "windows": windows,

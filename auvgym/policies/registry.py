@@ -54,8 +54,8 @@ def make(name: str, seed: int = 0, **parameters: Any) -> Policy:
 
     Args:
         name: one of :func:`list_policies` or :func:`list_triggers`, ``"module:Class"`` for a
-            class of one's own, or the path of a trained agent: ``"agent.onnx"`` with its card, or a Stable-Baselines3
-            ``"agent.zip"`` (reading one runs code from it).
+            class of one's own, or the path of a trained agent: ``"agent.onnx"`` with its card, or
+            a Stable-Baselines3 ``"agent.zip"`` (reading one runs code from it).
         seed: seed of whatever the policy draws.
         **parameters: the policy's own, as its class documents them; a planner's policy takes
             ``window`` and the planner's parameters.

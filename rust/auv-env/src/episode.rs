@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use auv_planners::Control;
+use auv_world::World;
 use auv_world::math::{Vec3, add_scaled, distance};
 use auv_world::scenario::Change;
-use auv_world::World;
 use auv_world::world::Scratch;
 use serde::{Deserialize, Serialize};
 

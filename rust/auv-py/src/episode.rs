@@ -17,10 +17,7 @@ use crate::world::World;
 
 /// Blocks of the observation: (name, start, length, low, high, meaning).
 #[pyfunction]
-pub fn observation_layout(
-    dimensions: u8,
-    replan: bool,
-) -> Vec<(&'static str, usize, usize, f32, f32, &'static str)> {
+pub fn observation_layout(dimensions: u8, replan: bool) -> Vec<(&'static str, usize, usize, f32, f32, &'static str)> {
     observation::layout(dimensions, if replan { Mode::Replan } else { Mode::Waypoint })
         .into_iter()
         .map(|block| (block.name, block.start, block.len, block.low, block.high, block.meaning))

@@ -60,12 +60,7 @@ impl Pool {
 }
 
 /// Work on the pool's threads, while this one asks now and then whether to `stop` and says so by the flag.
-pub fn watched(
-    threads: &ThreadPool,
-    stopped: &AtomicBool,
-    stop: &mut dyn FnMut() -> bool,
-    work: impl FnOnce() + Send,
-) {
+pub fn watched(threads: &ThreadPool, stopped: &AtomicBool, stop: &mut dyn FnMut() -> bool, work: impl FnOnce() + Send) {
     let (done, finished) = channel();
     threads.in_place_scope(|scope| {
         scope.spawn(move |_| {

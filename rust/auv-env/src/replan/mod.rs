@@ -16,8 +16,8 @@ use auv_world::math::Vec3;
 use auv_world::world::ChangeEvent;
 use serde::{Deserialize, Serialize};
 
-use course::Way;
 pub use course::Course;
+use course::Way;
 pub use observation::BLOCKS;
 pub(crate) use observation::observe;
 pub use settings::{Delay, Settings, Window};

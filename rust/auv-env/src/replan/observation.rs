@@ -31,8 +31,22 @@ pub const BLOCKS: [Entry; 10] = [
     ),
     ("plan_changes", 1, 1, 0.0, 1.0, "a quarter of the number of map changes since the plan was made"),
     ("plan_age", 2, 2, 0.0, 1.0, "since the plan was made: path length over d0, time over the time limit"),
-    ("plan_left", 2, 2, 0.0, 2.0, "length left of the plan over d0; time that its map promises for it over the time left"),
-    ("plan_leg", 3, 4, -1.0, 1.0, "unit vector to where the next leg is steered (forward, left[, up]); its distance over the reach"),
+    (
+        "plan_left",
+        2,
+        2,
+        0.0,
+        2.0,
+        "length left of the plan over d0; time that its map promises for it over the time left",
+    ),
+    (
+        "plan_leg",
+        3,
+        4,
+        -1.0,
+        1.0,
+        "unit vector to where the next leg is steered (forward, left[, up]); its distance over the reach",
+    ),
     (
         "plan_current",
         6,
@@ -53,7 +67,14 @@ pub const BLOCKS: [Entry; 10] = [
          takes in still water",
     ),
     ("plan_feasible", 1, 1, 0.0, 1.0, "1 if the planner found its plan to break no constraint"),
-    ("planning_delay", 3, 3, 0.0, 1.0, "what planning in the short, the long and the full window takes over a tenth of the time limit"),
+    (
+        "planning_delay",
+        3,
+        3,
+        0.0,
+        1.0,
+        "what planning in the short, the long and the full window takes over a tenth of the time limit",
+    ),
 ];
 
 /// Fills what `out` has left with what there is to know of the plan.
