@@ -226,7 +226,7 @@ impl Episode {
     /// changed then.
     pub fn act(&mut self, action: &[f32], control: &Control<'_>) -> Result<f64, EnvError> {
         match self.pilot.take() {
-            None => self.step(action),
+            None => self.steer(action),
             Some(mut pilot) => {
                 let done = self.decide(&mut pilot, action, control);
                 self.pilot = Some(pilot);
@@ -235,11 +235,16 @@ impl Episode {
         }
     }
 
-    /// Flies one leg towards the action's waypoint; gives its reward.
+    /// The same; nothing interrupts it.
     ///
     /// # Errors
-    /// [`EnvError`] for a wrong action or an episode that has ended; nothing has changed then.
+    /// As [`Episode::act`].
     pub fn step(&mut self, action: &[f32]) -> Result<f64, EnvError> {
+        self.act(action, &Control::none())
+    }
+
+    /// Flies one leg towards the action's waypoint.
+    fn steer(&mut self, action: &[f32]) -> Result<f64, EnvError> {
         self.check(action)?;
         let waypoint = self.waypoint_of(action);
         Ok(self.rewarded(action, |episode| episode.fly(waypoint)))

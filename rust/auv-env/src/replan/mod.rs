@@ -94,6 +94,7 @@ impl Pilot {
         control: &Control<'_>,
     ) -> Result<Draft, EnvError> {
         let scenario = world.scenario();
+        self.course.advance(position, scenario.episode.capture_radius_m);
         let [low, high] = [scenario.domain.min_m, scenario.domain.max_m];
         // The current may have carried the vehicle a little outside the box.
         let start = std::array::from_fn(|axis| position[axis].clamp(low[axis], high[axis]));

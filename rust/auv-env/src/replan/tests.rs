@@ -18,7 +18,7 @@ fn source(family: &str, delay: Delay) -> Source {
 const DELAY: Delay = Delay::Fixed([120.0, 300.0, 600.0]);
 
 fn act(episode: &mut Episode, action: f32) -> f64 {
-    episode.act(&[action], &Control::none()).unwrap()
+    episode.step(&[action]).unwrap()
 }
 
 #[test]
@@ -93,6 +93,23 @@ fn without_a_way_the_old_plan_stays_in_flight() {
     assert_eq!((episode.measures().failed_plans, episode.measures().replans), (1, 1));
     assert_eq!(episode.state().planning_s, 600.0);
     assert_eq!(episode.pilot().unwrap().course.waypoints, plan);
+}
+
+#[test]
+fn looking_decides_nothing() {
+    let source = source("lfhh-2d", DELAY);
+    let (mut looks, mut blind) = (source.episode(7).unwrap(), source.episode(7).unwrap());
+    let mut values = vec![0.0; source.widths().1];
+    for step in 0.. {
+        let action = [f32::from([0_u8, 0, 0, 1, 0, 2][step % 6])];
+        looks.observe(&mut values);
+        assert_eq!(looks.step(&action), blind.step(&action));
+        assert_eq!(looks.state(), blind.state());
+        if looks.state().outcome != Outcome::Running {
+            break;
+        }
+    }
+    assert!(blind.state().replans > 2);
 }
 
 #[test]
