@@ -38,6 +38,13 @@ def evaluate(
         list[str] | None,
         typer.Option("--set", help="A parameter of the policy, key=value; may be repeated."),
     ] = None,
+    env_settings: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--env-set",
+            help="A setting of the environment, key=value, as action_mode=replan; may be repeated.",
+        ),
+    ] = None,
     workers: Annotated[int, typer.Option(help="Processes to fly in.")] = 1,
     engine: EngineOption = Engine.processes,
     step_limit: StepLimitOption = STEP_LIMIT_S,
@@ -56,10 +63,14 @@ def evaluate(
     from auvgym import evaluation
     from auvgym.cli.flying import fly_with_progress, show
 
+    if suite is not None and env_settings:
+        raise ValueError("--env-set: a suite says what its environments are set to, leave it out")
     instances = (
         evaluation.load_suite(suite)
         if suite is not None
-        else evaluation.single_suite(environment, episodes, difficulty, scenario, first_seed)
+        else evaluation.single_suite(
+            environment, episodes, difficulty, scenario, first_seed, parse_settings(env_settings)
+        )
     )
     spec = evaluation.PolicySpec(policy, seed, parse_settings(settings))
     path = None if out is None else out / "results.db"

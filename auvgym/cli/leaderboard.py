@@ -69,11 +69,12 @@ def _write_page(suite: Suite, results: list[EpisodeResult], path: Path) -> Path:
 
 def _names(policies: str | None, suite: Suite) -> list[str]:
     import auvgym
+    from auvgym.policies import list_triggers
 
     if policies is None and suite.policies:
         return list(suite.policies)
     if policies is None or policies == "all":
-        return auvgym.list_policies()
+        return [*auvgym.list_policies(), *list_triggers()]
     names = [name.strip() for name in policies.split(",") if name.strip()]
     if not names:
         raise ValueError("--policies names none; give names, comma-separated, or all")

@@ -74,7 +74,7 @@ def _policies() -> Iterator[tuple[str, str]]:
     import auvgym
     from auvgym import policies
 
-    for name in auvgym.list_policies():
+    for name in [*auvgym.list_policies(), *policies.list_triggers()]:
         policy = policies.make(name)
         yield name, f"{getattr(policy, 'description', '')} (knows: {policy.knows})"
 

@@ -87,7 +87,13 @@ class AUVDynamic2DEnv(AUVEnv):
       of a single vortex over V; ``time_factor``; ``obstacles``; ``vortices``;
       ``vehicle_speed_mps``; ``change_every_m`` (0: never); ``obstacle_speed_mps``;
       ``vortex_drift_mps``; ``sensor_noise_m`` (0: the ``obstacles`` block is exact).
-    - ``action_mode``: "waypoint". ``render_mode``: None, "human" or "rgb_array".
+    - ``action_mode``: "waypoint", as above, or "replan": a planner's path is flown leg by leg, the action is
+      ``Discrete(4)`` (0 go on, 1 plan a short window anew, 2 a long one, 3 plan anew to the goal), planning
+      takes its time, and the observation goes on with the plan: ``docs/environments.md``. For it alone:
+      ``planner`` (default: "astar" on a grid of 500 m), ``planner_parameters``, ``windows`` (how far a short
+      and a long one reach, in parts of d0: 0.2 and 0.5), ``planning_s`` (what planning to the goal takes, s:
+      600, windows in proportion; or three numbers) or instead ``seconds_per_evaluation``.
+    - ``render_mode``: None, "human" or "rgb_array".
 
     The same seed gives the same bytes. Environments can be deep-copied and pickled while running
     and go on identically.

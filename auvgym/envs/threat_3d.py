@@ -97,7 +97,13 @@ class AUVThreat3DEnv(AUVEnv):
       speed over V, 0 for still water; ``time_factor``; ``vehicle_speed_mps``;
       ``manoeuvres``: "none" (default), "turn" (each in a circle), "zigzag" or "mixed";
       ``sensor_noise_m`` (20; 0: exact).
-    - ``action_mode``: "waypoint". ``render_mode``: None, "human" or "rgb_array".
+    - ``action_mode``: "waypoint", as above, or "replan": a planner's path is flown leg by leg, the action is
+      ``Discrete(4)`` (0 go on, 1 plan a short window anew, 2 a long one, 3 plan anew to the goal), planning
+      takes its time, and the observation goes on with the plan: ``docs/environments.md``. For it alone:
+      ``planner`` (default: "astar" on a grid of 250 m), ``planner_parameters``, ``windows`` (how far a short
+      and a long one reach, in parts of d0: 0.2 and 0.5), ``planning_s`` (what planning to the goal takes, s:
+      150, windows in proportion; or three numbers) or instead ``seconds_per_evaluation``.
+    - ``render_mode``: None, "human" or "rgb_array".
 
     The same seed gives the same bytes. Environments can be deep-copied and pickled while running
     and go on identically.
@@ -108,3 +114,4 @@ class AUVThreat3DEnv(AUVEnv):
 
     dimensions = 3
     family = "iifds"
+    usual_planning_s = 150.0

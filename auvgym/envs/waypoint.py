@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import os
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import gymnasium
@@ -15,6 +16,7 @@ from auvgym import _core
 from auvgym._arrays import numbers
 from auvgym._core import ActionError
 from auvgym._names import unknown
+from auvgym.envs.replan import CHOICES, Replanning, as_decision, replanning
 from auvgym.scenario import Scenario, check_seed, parameters_json, resolve_scenario
 from auvgym.world import World
 
@@ -23,11 +25,15 @@ if TYPE_CHECKING:
 
 Observation = npt.NDArray[np.float32]
 Action = npt.NDArray[np.float32]
+#: What ``step`` takes: an offset in waypoint mode, a number in re-plan mode.
+Choice = Any
 Array = npt.NDArray[np.float64]
 
 
-class AUVEnv(gymnasium.Env[Observation, Action]):
+class AUVEnv(gymnasium.Env[Observation, Choice]):
     """An AUV that is steered from waypoint to waypoint; base of the registered environments.
+
+    With ``action_mode="replan"`` a planner's path is flown, and actions say when to plan anew.
 
     Subclasses set ``dimensions`` and ``family``. What an episode is, the observation and the
     reward are decided in the engine; this class only speaks Gymnasium.
@@ -39,6 +45,8 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
     }
     dimensions: ClassVar[int]
     family: ClassVar[str]
+    #: What planning to the goal takes in re-plan mode unless it is said, s.
+    usual_planning_s: ClassVar[float] = 600.0
 
     def __init__(
         self,
@@ -60,6 +68,11 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
         manoeuvres: str | None = None,
         sensor_noise_m: float | None = None,
         vessels: int | None = None,
+        planner: str | None = None,
+        planner_parameters: Mapping[str, Any] | None = None,
+        windows: Sequence[float] | None = None,
+        planning_s: float | Sequence[float] | None = None,
+        seconds_per_evaluation: float | None = None,
         render_mode: str | None = None,
         **unknown_settings: Any,
     ) -> None:
@@ -68,8 +81,18 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
                 name for name in inspect.signature(AUVEnv).parameters if name != "unknown_settings"
             ]
             raise TypeError(unknown("setting", next(iter(unknown_settings)), known))
-        if action_mode != "waypoint":
-            raise ValueError(f"action_mode = {action_mode!r}: must be 'waypoint'")
+        if action_mode not in ("waypoint", "replan"):
+            raise ValueError(f"action_mode = {action_mode!r}: must be 'waypoint' or 'replan'")
+        planning: dict[str, Any] = {
+            "planner": planner,
+            "planner_parameters": planner_parameters,
+            "windows": windows,
+            "planning_s": planning_s,
+            "seconds_per_evaluation": seconds_per_evaluation,
+        }
+        given = [name for name, value in planning.items() if value is not None]
+        if action_mode == "waypoint" and given:
+            raise ValueError(f"{given[0]} is for action_mode='replan': leave it out, or say so")
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             modes = self.metadata["render_modes"]
             raise ValueError(f"render_mode = {render_mode!r}: must be None or one of {modes}")
@@ -93,13 +116,19 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
             "sensor_noise_m": sensor_noise_m,
             "vessels": vessels,
         }
+        self._replanning: Replanning | None = None
         self._source = self._make_source()
+        if action_mode == "replan":
+            self._replanning = replanning(self._source, self.usual_planning_s, **planning)
+            self._source = self._replanning.source(self._source)
+        #: "waypoint" or "replan".
+        self.action_mode = action_mode
         self._episode: _core.Episode | None = None
         self._viewer: Viewer | None = None
-        #: What a policy wants drawn: waypoints (n, 3) m, or None.
+        #: The plan in flight, or what a policy wants drawn: waypoints (n, 3) m, or None.
         self.plan: Array | None = None
 
-        blocks = _core.observation_layout(self.dimensions)
+        blocks = _core.observation_layout(self.dimensions, self._replanning is not None)
         low = np.concatenate(
             [np.full(count, least, np.float32) for _, _, count, least, _, _ in blocks]
         )
@@ -107,7 +136,11 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
             [np.full(count, most, np.float32) for _, _, count, _, most, _ in blocks]
         )
         self.observation_space = gymnasium.spaces.Box(low, high, dtype=np.float32)
-        self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (self.dimensions,), np.float32)
+        self.action_space: gymnasium.Space[Any] = (
+            gymnasium.spaces.Box(-1.0, 1.0, (self.dimensions,), np.float32)
+            if self._replanning is None
+            else gymnasium.spaces.Discrete(CHOICES)
+        )
         #: Name of a block of the observation -> where it is.
         self.observation_layout = {
             name: slice(start, start + count) for name, start, count, _, _, _ in blocks
@@ -161,9 +194,11 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
         A waypoint beyond the reach is brought nearer along the line to it.
 
         Raises:
-            ValueError: if the waypoint is not finite or has another shape.
+            ValueError: if the waypoint is not finite or has another shape, or in re-plan mode.
             ResetNeeded: before the first ``reset``.
         """
+        if self._replanning is not None:
+            raise ValueError("action_for steers at waypoints: in re-plan mode the plan does")
         point = numbers("waypoint", waypoint)
         if point.shape != (3,):
             raise ValueError(f"waypoint has shape {point.shape}: must be (3,)")
@@ -195,28 +230,33 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
             episode_seed = int(self.np_random.integers(0, 2**63))
         episode_seed = check_seed(episode_seed, "episode_seed")
         self._episode = self._source.episode(episode_seed)
-        self.plan = None
+        self.plan = self._episode.plan
         info = self._episode.info()
         info["episode_seed"] = episode_seed
         if self.render_mode == "human":
             self.render()
         return self._episode.observe(), info
 
-    def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """Fly one leg.
+    def step(self, action: Choice) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+        """Fly one leg; in re-plan mode plan anew before it, if the action says so.
 
         Args:
-            action: (d,) numbers in [-1, 1].
+            action: (d,) numbers in [-1, 1]; in re-plan mode 0, 1, 2 or 3.
 
         Raises:
             ActionError: for an action of wrong shape or type, not finite or out of range; the
                 episode is as before.
             ResetNeeded: before ``reset`` and after the end.
+            KeyboardInterrupt: on Ctrl-C while planning; the episode is as before.
         """
         episode = self.episode
         if episode.outcome != "running":
             raise ResetNeeded(f"the episode has ended ({episode.outcome}): call reset() first")
-        observation, reward, terminated = episode.step(_as_float32(action, self.dimensions))
+        if self._replanning is None:
+            observation, reward, terminated = episode.step(_as_float32(action, self.dimensions))
+        else:
+            observation, reward, terminated = episode.step(as_decision(action))
+            self.plan = episode.plan
         if self.render_mode == "human":
             self.render()
         return observation, reward, terminated, False, episode.info()
@@ -245,6 +285,8 @@ class AUVEnv(gymnasium.Env[Observation, Action]):
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
         self._source = self._make_source()
+        if self._replanning is not None:
+            self._source = self._replanning.source(self._source)
 
 
 def _as_float32(action: Any, entries: int) -> Action:

@@ -104,14 +104,19 @@ def single_suite(
     difficulty: str | None = None,
     scenario: str = "",
     first_seed: int = 0,
+    settings: Mapping[str, Any] | None = None,
 ) -> Suite:
-    """A suite of ``episodes`` consecutive seeds in one environment, for the command line."""
+    """A suite of ``episodes`` consecutive seeds in one environment, for the command line.
+
+    ``settings`` are the environment's other arguments, as ``{"action_mode": "replan"}``.
+    """
     if episodes < 1:
         raise SuiteError(f"episodes is {episodes}; at least 1 is needed")
     difficulty = chosen_difficulty(difficulty, scenario)
-    name = "/".join(part for part in (environment, difficulty, scenario) if part)
+    given = settings_json(settings or {})
+    name = "/".join(part for part in (environment, difficulty, scenario, given) if part)
     instances = tuple(
-        Instance(environment, seed, difficulty, scenario)
+        Instance(environment, seed, difficulty, scenario, given)
         for seed in range(first_seed, first_seed + episodes)
     )
     return Suite(f"{name}/{first_seed}+{episodes}", instances)

@@ -129,8 +129,9 @@ def _result(
         seed=task.instance.seed,
         engine_version=auvgym.__version__,
         error=error,
-        evaluations=int(getattr(policy, "evaluations", 0)),
-        replans=int(getattr(policy, "replans", 0)),
+        # Planning in re-plan mode is the environment's, not the policy's.
+        evaluations=max(int(getattr(policy, "evaluations", 0)), flight.info["evaluations"]),
+        replans=max(int(getattr(policy, "replans", 0)), flight.info["replans"]),
         gap=policy.gap() if hasattr(policy, "gap") and not failure else None,
         planning_seconds=float(getattr(policy, "planning_seconds", 0.0)),
         actions=pack_actions(flight.actions),

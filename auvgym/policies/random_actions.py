@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from gymnasium.spaces import Discrete
 
 from auvgym.policies.base import Action, Observation, ScriptedPolicy
 
@@ -24,6 +25,9 @@ class RandomPolicy(ScriptedPolicy):
         )
 
     def act(self, observation: Observation, info: dict[str, Any]) -> Action:
-        """A point of the action box, (d,) float32."""
-        shape = self.env.action_space.shape
+        """A point of the action box, (d,) float32; in re-plan mode one of the actions, (1,)."""
+        space = self.env.action_space
+        if isinstance(space, Discrete):
+            return self._generator.integers(0, space.n, 1).astype(np.float32)
+        shape = space.shape
         return self._generator.uniform(-1.0, 1.0, shape).astype(np.float32)

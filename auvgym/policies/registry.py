@@ -22,6 +22,7 @@ from auvgym.policies.planner import PlannerPolicy
 from auvgym.policies.random_actions import RandomPolicy
 from auvgym.policies.sonar_rule import SonarRulePolicy
 from auvgym.policies.straight import StraightPolicy
+from auvgym.policies.triggers import TRIGGERS
 
 SCRIPTED: dict[str, type[ScriptedPolicy]] = {
     policy.name: policy
@@ -43,13 +44,18 @@ def list_policies() -> list[str]:
     return [*SCRIPTED, *planners]
 
 
+def list_triggers() -> list[str]:
+    """Every name that :func:`make` knows of policies for ``action_mode="replan"``."""
+    return list(TRIGGERS)
+
+
 def make(name: str, seed: int = 0, **parameters: Any) -> Policy:
     """Make a policy.
 
     Args:
-        name: one of :func:`list_policies`, ``"module:Class"`` for a class of one's own, or the
-            path of a trained agent: ``"agent.onnx"`` with its card, or a Stable-Baselines3
-            ``"agent.zip"`` (reading one runs code from it).
+        name: one of :func:`list_policies` or :func:`list_triggers`, ``"module:Class"`` for a
+            class of one's own, or the path of a trained agent: ``"agent.onnx"`` with its card, or
+            a Stable-Baselines3 ``"agent.zip"`` (reading one runs code from it).
         seed: seed of whatever the policy draws.
         **parameters: the policy's own, as its class documents them; a planner's policy takes
             ``window`` and the planner's parameters.
@@ -60,6 +66,9 @@ def make(name: str, seed: int = 0, **parameters: Any) -> Policy:
     if name in SCRIPTED:
         _check_parameters(name, SCRIPTED[name], parameters, ("seed",))
         return SCRIPTED[name](seed=seed, **parameters)
+    if name in TRIGGERS:
+        _check_parameters(name, TRIGGERS[name], parameters, ("seed",))
+        return TRIGGERS[name](seed=seed, **parameters)
     if name in auvgym.list_planners() or name in ompl.PLANNERS:
         return PlannerPolicy(planner=name, seed=seed, **parameters)
     for ending, agent in AGENTS.items():
@@ -69,12 +78,13 @@ def make(name: str, seed: int = 0, **parameters: Any) -> Policy:
             return made  # type: ignore[no-any-return]
     if ":" in name:
         return _make_foreign(name, seed, parameters)
-    raise PolicyError(unknown("policy", name, list_policies()))
+    raise PolicyError(unknown("policy", name, [*list_policies(), *list_triggers()]))
 
 
 def is_shipped(name: str) -> bool:
     """Whether a policy is auvgym's own code, which needs no guard."""
-    return name in SCRIPTED or name in auvgym.list_planners() or name in ompl.PLANNERS
+    names = (SCRIPTED, TRIGGERS, auvgym.list_planners(), ompl.PLANNERS)
+    return any(name in known for known in names)
 
 
 def frozen_parameters(name: str, parameters: Mapping[str, Any]) -> dict[str, Any]:

@@ -152,7 +152,7 @@ class AUVVectorEnv(gymnasium.vector.VectorEnv[Observations, npt.ArrayLike, npt.N
         """Fly one leg in every environment.
 
         Args:
-            actions: (n, d) numbers in [-1, 1].
+            actions: (n, d) numbers in [-1, 1]; in re-plan mode (n,) numbers 0, 1, 2 or 3.
 
         Returns:
             Observations (n, k) float32, rewards (n,) float64, terminations and truncations (n,)
@@ -213,7 +213,8 @@ class AUVVectorEnv(gymnasium.vector.VectorEnv[Observations, npt.ArrayLike, npt.N
 
     def _as_float32(self, actions: Any) -> Observations:
         """Actions as the engine takes them."""
-        shape = (self.num_envs, self.settings.dimensions)
+        discrete = self.settings.action_mode == "replan"
+        shape = (self.num_envs,) if discrete else (self.num_envs, self.settings.dimensions)
         try:
             array = np.asarray(actions)
         except (TypeError, ValueError) as error:
@@ -222,6 +223,8 @@ class AUVVectorEnv(gymnasium.vector.VectorEnv[Observations, npt.ArrayLike, npt.N
             raise ActionError(f"actions must be numbers of shape {shape}, not {array.dtype}")
         if array.shape != shape:
             raise ActionError(f"actions have shape {array.shape}: must be {shape}")
+        if discrete:
+            array = array[:, None]
         # A number too large for float32 becomes infinite, which the engine refuses by name.
         with np.errstate(over="ignore"):
             return np.ascontiguousarray(array, dtype=np.float32)
@@ -280,9 +283,9 @@ class AUVVectorEnv(gymnasium.vector.VectorEnv[Observations, npt.ArrayLike, npt.N
 
             self._viewers[index] = Viewer(self.render_mode)
         member = self.members[index]
-        frame: npt.NDArray[np.uint8] = self._viewers[index].frame(
-            member.world, member.episode, member.plan
-        )
+        episode = member.episode
+        plan = episode.plan if member.plan is None else member.plan
+        frame: npt.NDArray[np.uint8] = self._viewers[index].frame(member.world, episode, plan)
         return frame
 
     def render(self) -> tuple[Any, ...] | None:

@@ -64,8 +64,10 @@ class Member:
         """The action, (d,) float32, that steers towards a waypoint, (3,) m.
 
         Raises:
-            ValueError: if the waypoint is not finite or has another shape.
+            ValueError: if the waypoint is not finite or has another shape, or in re-plan mode.
         """
+        if self.action_mode == "replan":
+            raise ValueError("action_for steers at waypoints: in re-plan mode the plan does")
         point = numbers("waypoint", waypoint)
         if point.shape != (3,):
             raise ValueError(f"waypoint has shape {point.shape}: must be (3,)")

@@ -1,6 +1,7 @@
 //! What an environment step costs on one core: a whole leg of the default families, and its parts.
 
-use auv_env::{Episode, Source, observation};
+use auv_env::observation::{self, Mode};
+use auv_env::{Episode, Source};
 use auv_world::families::Parameters;
 use auv_world::rng::{Purpose, Stream};
 use divan::counter::ItemsCount;
@@ -18,7 +19,7 @@ fn source(family: &str) -> Source {
 fn waypoint_steps(bencher: divan::Bencher, family: &str) {
     let source = source(family);
     let mut episode = source.episode(0).expect("a world");
-    let mut observation = vec![0.0; observation::length(episode.world().scenario().dimensions)];
+    let mut observation = vec![0.0; observation::length(episode.world().scenario().dimensions, Mode::Waypoint)];
     let mut stream = Stream::new(3, Purpose::Planner, 0);
     let mut seed = 0;
     bencher.counter(ItemsCount::new(100_usize)).bench_local(|| {
@@ -52,7 +53,7 @@ fn ticks(bencher: divan::Bencher, family: &str) {
 #[divan::bench(args = ["lfhh-2d", "lfhh-3d"])]
 fn observe(bencher: divan::Bencher, family: &str) {
     let mut episode = source(family).episode(1).expect("a world");
-    let mut observation = vec![0.0; observation::length(episode.world().scenario().dimensions)];
+    let mut observation = vec![0.0; observation::length(episode.world().scenario().dimensions, Mode::Waypoint)];
     for _ in 0..8 {
         let action = episode.action_for([10_000.0, 20_000.0, 10_000.0]);
         let _ended = episode.step(&action[..episode.action_len()]);

@@ -1,112 +1,21 @@
 //! One episode: the vehicle flies leg by leg until it arrives or fails.
 
-use auv_world::math::{Vec3, add_scaled, distance, sub};
+use std::sync::Arc;
+
+use auv_planners::Control;
+use auv_world::World;
+use auv_world::math::{Vec3, add_scaled, distance};
 use auv_world::scenario::Change;
-use auv_world::world::{ChangeEvent, Scratch};
-use auv_world::{Scenario, World};
+use auv_world::world::Scratch;
 use serde::{Deserialize, Serialize};
 
 use crate::error::EnvError;
 use crate::frame::Frame;
+use crate::measures::{Limits, Measures, Outcome, Record};
+use crate::observation::{Mode, Writer};
+use crate::replan::{Pilot, Settings, Window};
 use crate::vehicle::Helm;
-use crate::{observation, reward, sonar};
-
-/// An action of 0 along "forward" already goes this part of the reach forward, so that an untrained
-/// policy moves; -1 still backs out by half the reach.
-pub const FORWARD_BIAS: f64 = 0.25;
-
-/// How an episode stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum Outcome {
-    /// Not over.
-    Running,
-    /// Within the goal radius.
-    Goal,
-    /// Inside something solid.
-    Collision,
-    /// Beyond the margin round the box.
-    OutOfBounds,
-    /// No energy left.
-    Energy,
-    /// No time left.
-    Timeout,
-}
-
-impl Outcome {
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Running => "running",
-            Self::Goal => "goal",
-            Self::Collision => "collision",
-            Self::OutOfBounds => "out_of_bounds",
-            Self::Energy => "energy",
-            Self::Timeout => "timeout",
-        }
-    }
-}
-
-/// Whether an episode keeps where the vehicle was and what was ordered.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Record {
-    /// Every tick and action, for pictures and replays.
-    Everything,
-    /// Nothing but the present: a few tens of kilobytes less.
-    Nothing,
-}
-
-/// What is measured of an episode, SI units.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Measures {
-    /// Time since the start (s).
-    pub time_s: f64,
-    /// Energy spent (J).
-    pub energy_j: f64,
-    /// Length of the path over ground (m).
-    pub path_length_m: f64,
-    /// Least clearance so far (m).
-    pub min_clearance_m: f64,
-    /// Distance to the goal (m).
-    pub distance_to_goal_m: f64,
-    /// Planner evaluations charged.
-    pub evaluations: u64,
-    /// Plans after the first.
-    pub replans: u64,
-    /// Map changes so far.
-    pub map_changes: usize,
-    /// Whether the last leg ended with one.
-    pub map_changed: bool,
-    /// How the episode stands.
-    pub outcome: Outcome,
-}
-
-impl Default for Measures {
-    fn default() -> Self {
-        Self {
-            time_s: 0.0,
-            energy_j: 0.0,
-            path_length_m: 0.0,
-            min_clearance_m: 0.0,
-            distance_to_goal_m: 0.0,
-            evaluations: 0,
-            replans: 0,
-            map_changes: 0,
-            map_changed: false,
-            outcome: Outcome::Running,
-        }
-    }
-}
-
-/// What an episode may spend.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
-    /// Straight line from start to goal (m).
-    pub distance_m: f64,
-    /// Time limit (s).
-    pub time_s: f64,
-    /// Energy budget (J).
-    pub energy_j: f64,
-}
+use crate::{observation, replan, reward, sonar};
 
 /// Everything that changes while an episode runs, but for its world.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -135,6 +44,10 @@ pub struct State {
     pub evaluations: u64,
     /// Plans made in this episode after the first.
     pub replans: u64,
+    /// Time spent keeping station while a plan was made (s).
+    pub planning_s: f64,
+    /// Plans after the first that found no way and were not taken.
+    pub failed_plans: u64,
     /// Whether the last leg ended with a map change.
     pub map_changed: bool,
     /// How it stands.
@@ -153,20 +66,12 @@ pub struct Episode {
     helm: Helm,
     state: State,
     record: Record,
+    /// Who flies a plan, in re-plan mode.
+    pilot: Option<Box<Pilot>>,
     beams: Vec<Vec3>,
     turned: Vec<Vec3>,
     ranges: Vec<f64>,
     scratch: Scratch,
-}
-
-/// A saved episode.
-#[derive(Serialize, Deserialize)]
-struct Saved {
-    scenario: String,
-    seed: u64,
-    mission: usize,
-    changes: Vec<ChangeEvent>,
-    state: State,
 }
 
 impl Episode {
@@ -189,6 +94,8 @@ impl Episode {
             clearance_left_m: clearance,
             evaluations: 0,
             replans: 0,
+            planning_s: 0.0,
+            failed_plans: 0,
             map_changed: false,
             outcome: Outcome::Running,
             trail: vec![mission.start_m],
@@ -227,6 +134,7 @@ impl Episode {
             helm,
             state,
             record: Record::Everything,
+            pilot: None,
             turned: beams.clone(),
             beams,
             ranges: vec![0.0; count],
@@ -260,6 +168,9 @@ impl Episode {
             distance_to_goal_m: self.distance_to_goal_m(),
             evaluations: state.evaluations,
             replans: state.replans,
+            planning_s: state.planning_s,
+            failed_plans: state.failed_plans,
+            plan_feasible: self.pilot.as_ref().is_some_and(|pilot| pilot.course.feasible),
             map_changes: self.world.changes().len(),
             map_changed: state.map_changed,
             outcome: state.outcome,
@@ -276,9 +187,30 @@ impl Episode {
         distance(self.state.position, self.world.mission().goal_m)
     }
 
+    /// What actions decide.
+    pub fn mode(&self) -> Mode {
+        if self.pilot.is_some() { Mode::Replan } else { Mode::Waypoint }
+    }
+
+    /// Who flies a plan, in re-plan mode.
+    pub fn pilot(&self) -> Option<&Pilot> {
+        self.pilot.as_deref()
+    }
+
     /// Entries of an action.
     pub fn action_len(&self) -> usize {
-        usize::from(self.world.scenario().dimensions)
+        self.mode().action_len(self.world.scenario().dimensions)
+    }
+
+    /// Plans the whole way, before departure: from now on actions say when to plan anew.
+    ///
+    /// # Errors
+    /// [`EnvError`] for a planner or parameter that is not allowed or does not fit the world, or if interrupted.
+    pub fn plan(&mut self, settings: Arc<Settings>, control: &Control<'_>) -> Result<(), EnvError> {
+        let (pilot, evaluations) = Pilot::new(settings, &self.world, control)?;
+        self.pilot = Some(Box::new(pilot));
+        self.charge(evaluations, 0);
+        Ok(())
     }
 
     /// Charges planning to the episode.
@@ -287,73 +219,83 @@ impl Episode {
         self.state.replans += replans;
     }
 
-    /// Where an action of offsets in [-1, 1] (forward, left[, up]) puts the waypoint (m): forward
-    /// 0.25 + 0.75 a, the others a, times the reach, clipped to the box.
-    pub fn waypoint_of(&self, action: &[f32]) -> Vec3 {
-        let reach = self.world.scenario().episode.reach_m;
-        let mut offset = [0.0; 3];
-        for (entry, value) in offset.iter_mut().zip(action) {
-            *entry = f64::from(*value);
-        }
-        offset[0] = FORWARD_BIAS + (1.0 - FORWARD_BIAS) * offset[0];
-        self.clip(add_scaled(self.state.position, reach, self.frame().to_world(offset)))
-    }
-
-    /// The action whose waypoint is `waypoint`, or lies on the way to it if that is out of reach.
-    pub fn action_for(&self, waypoint: Vec3) -> [f32; 3] {
-        let reach = self.world.scenario().episode.reach_m;
-        let offset = self.frame().from_world(sub(waypoint, self.state.position)).map(|v| v / reach);
-        let back = 2.0 * FORWARD_BIAS - 1.0;
-        let mut scale = 1.0_f64;
-        for (entry, (low, high)) in offset.iter().zip([(back, 1.0), (-1.0, 1.0), (-1.0, 1.0)]) {
-            if *entry > high {
-                scale = scale.min(high / entry);
-            } else if *entry < low {
-                scale = scale.min(low / entry);
-            }
-        }
-        let action = offset.map(|v| v * scale);
-        let forward = (action[0] - FORWARD_BIAS) / (1.0 - FORWARD_BIAS);
-        [forward, action[1], action[2]].map(|v| v.clamp(-1.0, 1.0) as f32)
-    }
-
-    /// A point moved into the box, `waypoint_margin_m` away from its side walls, surface and bottom.
-    fn clip(&self, mut point: Vec3) -> Vec3 {
-        let (domain, margin) = (&self.world.scenario().domain, self.world.scenario().episode.waypoint_margin_m);
-        for axis in 0..3 {
-            let (low, high) = (domain.min_m[axis], domain.max_m[axis]);
-            let margin = if axis == 1 { 0.0 } else { margin.min(0.5 * (high - low)) };
-            point[axis] = point[axis].clamp(low + margin, high - margin);
-        }
-        point
-    }
-
-    /// Flies one leg towards the action's waypoint; gives its reward.
+    /// Takes an action in either mode; gives its reward. Only planning listens to `control`.
     ///
     /// # Errors
-    /// [`EnvError`] for a wrong action or an episode that has ended; nothing has changed then.
+    /// [`EnvError`] for a wrong action, an episode that has ended, or planning that was interrupted; nothing has
+    /// changed then.
+    pub fn act(&mut self, action: &[f32], control: &Control<'_>) -> Result<f64, EnvError> {
+        match self.pilot.take() {
+            None => self.steer(action),
+            Some(mut pilot) => {
+                let done = self.decide(&mut pilot, action, control);
+                self.pilot = Some(pilot);
+                done
+            }
+        }
+    }
+
+    /// The same; nothing interrupts it.
+    ///
+    /// # Errors
+    /// As [`Episode::act`].
     pub fn step(&mut self, action: &[f32]) -> Result<f64, EnvError> {
+        self.act(action, &Control::none())
+    }
+
+    /// Flies one leg towards the action's waypoint.
+    fn steer(&mut self, action: &[f32]) -> Result<f64, EnvError> {
         self.check(action)?;
         let waypoint = self.waypoint_of(action);
+        Ok(self.rewarded(action, |episode| episode.fly(waypoint)))
+    }
+
+    /// Plans anew if the action says so, which takes its time, and flies one leg of the plan. A map change while
+    /// planning ends the step: it calls for another decision.
+    fn decide(&mut self, pilot: &mut Pilot, action: &[f32], control: &Control<'_>) -> Result<f64, EnvError> {
+        self.check_decision(action)?;
+        let (position, flown_m) = (self.state.position, self.state.path_length_m);
+        let window = Window::asked(action[0])?;
+        let draft = window.map(|window| pilot.draft(&self.world, position, flown_m, window, control)).transpose()?;
+        Ok(self.rewarded(action, |episode| {
+            if let Some(draft) = draft {
+                episode.charge(draft.evaluations, 1);
+                let before = episode.state.time_s;
+                episode.hold(draft.seconds);
+                episode.state.planning_s += episode.state.time_s - before;
+                episode.state.failed_plans += u64::from(!pilot.take(draft));
+            }
+            if episode.state.outcome == Outcome::Running && !episode.state.map_changed {
+                let flight = &episode.world.scenario().episode;
+                pilot.course.advance(episode.state.position, flight.capture_radius_m);
+                let aim = pilot.course.aim(episode.state.position, flight);
+                episode.fly(aim);
+            }
+        }))
+    }
+
+    /// Does what an action asks for; gives its reward.
+    fn rewarded(&mut self, action: &[f32], work: impl FnOnce(&mut Self)) -> f64 {
         if self.record == Record::Everything {
             self.state.actions.extend_from_slice(action);
         }
-        self.state.waypoint = Some(waypoint);
+        self.state.map_changed = false;
         let (before, start_s) = (self.distance_to_goal_m(), self.state.time_s);
-        self.fly(waypoint);
+        work(self);
         let elapsed = self.state.time_s - start_s;
         let after = self.distance_to_goal_m();
-        Ok(reward::leg(before, after, self.limits.distance_m, elapsed, self.limits.time_s, self.state.outcome))
+        reward::leg(before, after, self.limits.distance_m, elapsed, self.limits.time_s, self.state.outcome)
     }
 
-    /// Whether an action may be flown.
+    /// Whether an action may be taken.
     ///
     /// # Errors
-    /// As [`Episode::step`].
+    /// As [`Episode::act`].
     pub fn check(&self, action: &[f32]) -> Result<(), EnvError> {
-        if self.state.outcome != Outcome::Running {
-            return Err(EnvError::Ended(self.state.outcome.name()));
+        if self.pilot.is_some() {
+            return self.check_decision(action);
         }
+        self.check_running()?;
         let wrong = |index: String, value: String, allowed: String| Err(EnvError::Action { index, value, allowed });
         let entries = self.action_len();
         if action.len() != entries {
@@ -370,21 +312,32 @@ impl Episode {
         }
     }
 
+    fn check_decision(&self, action: &[f32]) -> Result<(), EnvError> {
+        self.check_running()?;
+        match action {
+            [choice] => Window::asked(*choice).map(|_| ()),
+            _ => {
+                let (index, value) = (String::new(), format!("{} entries", action.len()));
+                Err(EnvError::Action { index, value, allowed: "must be one".into() })
+            }
+        }
+    }
+
+    fn check_running(&self) -> Result<(), EnvError> {
+        match self.state.outcome {
+            Outcome::Running => Ok(()),
+            ended => Err(EnvError::Ended(ended.name())),
+        }
+    }
+
     /// Flies until the waypoint is captured, the leg has lasted its time, the map changes, or the end.
     fn fly(&mut self, waypoint: Vec3) {
+        self.state.waypoint = Some(waypoint);
         let flight = self.world.scenario().episode.clone();
         let first = self.state.ticks;
-        self.state.map_changed = false;
         loop {
             self.tick(waypoint, flight.tick_s);
-            self.state.outcome = self.judge();
-            if self.state.outcome != Outcome::Running {
-                return;
-            }
-            if self.change_due() && self.world.apply_change(self.state.position) {
-                self.state.since_change_m = 0.0;
-                self.state.map_changed = true;
-                self.measure_clearance();
+            if self.judged() {
                 return;
             }
             let elapsed = (self.state.ticks - first) as f64 * flight.tick_s;
@@ -395,6 +348,32 @@ impl Episode {
                 return;
             }
         }
+    }
+
+    /// Keeps station for `seconds`, in whole ticks, or until the end. The map may change meanwhile.
+    fn hold(&mut self, seconds: f64) {
+        let (here, tick_s) = (self.state.position, self.world.scenario().episode.tick_s);
+        self.state.waypoint = Some(here);
+        let last = self.state.ticks.saturating_add((seconds / tick_s).ceil() as u64);
+        while self.state.ticks < last && self.state.outcome == Outcome::Running {
+            self.tick(here, tick_s);
+            self.judged();
+        }
+    }
+
+    /// Judges the tick that was flown, and changes the map if that is due: whether a leg ends with it.
+    fn judged(&mut self) -> bool {
+        self.state.outcome = self.judge();
+        if self.state.outcome != Outcome::Running {
+            return true;
+        }
+        if self.change_due() && self.world.apply_change(self.state.position) {
+            self.state.since_change_m = 0.0;
+            self.state.map_changed = true;
+            self.measure_clearance();
+            return true;
+        }
+        false
     }
 
     fn tick(&mut self, waypoint: Vec3, tick_s: f64) {
@@ -469,35 +448,17 @@ impl Episode {
         let range = self.world.scenario().episode.sonar_range_m;
         let origin = self.state.position;
         self.world.sonar(origin, &self.turned, range, &mut self.scratch, &mut self.ranges);
-        observation::observe(self, &self.ranges, values);
-    }
-
-    /// The episode as bytes; [`Episode::load`] makes it again and it goes on identically.
-    ///
-    /// # Errors
-    /// [`EnvError`] if the scenario has no text.
-    pub fn save(&self) -> Result<Vec<u8>, EnvError> {
-        let saved = Saved {
-            scenario: self.world.scenario().to_toml()?,
-            seed: self.world.seed(),
-            mission: self.world.mission_index(),
-            changes: self.world.changes().to_vec(),
-            state: self.state.clone(),
-        };
-        postcard::to_allocvec(&saved).map_err(|error| EnvError::Saved(error.to_string()))
-    }
-
-    /// An episode from bytes.
-    ///
-    /// # Errors
-    /// [`EnvError`] if they are not those of an episode.
-    pub fn load(bytes: &[u8]) -> Result<Self, EnvError> {
-        let saved: Saved = postcard::from_bytes(bytes).map_err(|error| EnvError::Saved(error.to_string()))?;
-        let scenario = Scenario::from_toml(&saved.scenario)?;
-        let world = World::restore(scenario, saved.seed, saved.mission, &saved.changes, saved.state.time_s)?;
-        Ok(Self::assemble(world, saved.state))
+        let mut out = Writer::new(values);
+        observation::observe(self, &self.ranges, &mut out);
+        if let Some(mut pilot) = self.pilot.take() {
+            replan::observe(self, &mut pilot, &mut out);
+            self.pilot = Some(pilot);
+        }
     }
 }
+
+mod saved;
+mod waypoints;
 
 #[cfg(test)]
 mod tests;

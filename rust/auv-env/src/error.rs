@@ -13,6 +13,16 @@ pub enum EnvError {
         /// What was allowed.
         allowed: String,
     },
+    /// A wrong setting.
+    #[error("{name} = {value}: {allowed}")]
+    Setting {
+        /// Its name.
+        name: String,
+        /// What was given.
+        value: String,
+        /// What was allowed.
+        allowed: String,
+    },
     /// A step after the end.
     #[error("the episode has ended ({0}): call reset() first")]
     Ended(&'static str),
@@ -27,9 +37,12 @@ pub enum EnvError {
         /// What is wrong.
         error: Box<EnvError>,
     },
-    /// Work on a batch that was stopped half way.
+    /// Work that was stopped half way.
     #[error("stopped: call reset() first")]
     Stopped,
+    /// What a planner refuses.
+    #[error(transparent)]
+    Planning(#[from] auv_planners::PlanError),
     /// A wrong scenario.
     #[error(transparent)]
     World(#[from] auv_world::WorldError),

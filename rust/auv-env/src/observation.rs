@@ -6,6 +6,7 @@ use auv_world::rng::{Purpose, Stream};
 
 use crate::episode::Episode;
 use crate::frame::Frame;
+use crate::replan;
 
 /// Obstacles described one by one.
 pub const NEAREST: usize = 3;
@@ -27,8 +28,30 @@ pub struct Block {
     pub meaning: &'static str,
 }
 
-/// Blocks in order: name, length in 2-D, length in 3-D, bounds, meaning.
-const BLOCKS: [(&str, usize, usize, f32, f32, &str); 16] = [
+/// What there is of a block: name, length in 2-D, length in 3-D, bounds, meaning.
+pub type Entry = (&'static str, usize, usize, f32, f32, &'static str);
+
+/// What is decided: where to go next, or whether to plan anew.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// The next waypoint.
+    Waypoint,
+    /// Whether to plan anew; then the plan is seen, too.
+    Replan,
+}
+
+impl Mode {
+    /// Entries of an action in 2 or 3 dimensions.
+    pub fn action_len(self, dimensions: u8) -> usize {
+        match self {
+            Self::Waypoint => usize::from(dimensions),
+            Self::Replan => 1,
+        }
+    }
+}
+
+/// Blocks of the vehicle and what is round it, in order.
+const BLOCKS: [Entry; 16] = [
     ("goal_distance", 1, 1, -1.0, 1.0, "2 d / d0 - 1: distance to the goal on the map over the one at the start"),
     ("goal_near", 1, 1, 0.0, 1.0, "distance to the goal on the map over the sonar range"),
     ("position", 2, 2, -1.0, 1.0, "x and y in the box, -1 at its lower and 1 at its upper walls"),
@@ -62,11 +85,19 @@ const BLOCKS: [(&str, usize, usize, f32, f32, &str); 16] = [
     ),
 ];
 
+/// All blocks of a mode.
+fn blocks(mode: Mode) -> impl Iterator<Item = &'static Entry> {
+    let plan: &[Entry] = match mode {
+        Mode::Waypoint => &[],
+        Mode::Replan => &replan::BLOCKS,
+    };
+    BLOCKS.iter().chain(plan)
+}
+
 /// The blocks of an observation in 2 or 3 dimensions.
-pub fn layout(dimensions: u8) -> Vec<Block> {
+pub fn layout(dimensions: u8, mode: Mode) -> Vec<Block> {
     let mut start = 0;
-    BLOCKS
-        .iter()
+    blocks(mode)
         .filter_map(|&(name, flat, deep, low, high, meaning)| {
             let len = if dimensions == 2 { flat } else { deep };
             let block = Block { name, start, len, low, high, meaning };
@@ -77,19 +108,23 @@ pub fn layout(dimensions: u8) -> Vec<Block> {
 }
 
 /// Length of an observation.
-pub fn length(dimensions: u8) -> usize {
-    BLOCKS.iter().map(|block| if dimensions == 2 { block.1 } else { block.2 }).sum()
+pub fn length(dimensions: u8, mode: Mode) -> usize {
+    blocks(mode).map(|block| if dimensions == 2 { block.1 } else { block.2 }).sum()
 }
 
 /// Writes values one after another, each clipped to the bounds of its block.
-struct Writer<'a> {
+pub(crate) struct Writer<'a> {
     values: &'a mut [f32],
     next: usize,
 }
 
-impl Writer<'_> {
+impl<'a> Writer<'a> {
+    pub(crate) fn new(values: &'a mut [f32]) -> Self {
+        Self { values, next: 0 }
+    }
+
     #[inline]
-    fn put(&mut self, value: f64, low: f64, high: f64) {
+    pub(crate) fn put(&mut self, value: f64, low: f64, high: f64) {
         self.values[self.next] = value.clamp(low, high) as f32;
         self.next += 1;
     }
@@ -137,8 +172,8 @@ struct Contact {
     index: usize,
 }
 
-/// Fills `values` with what the vehicle sees now.
-pub(crate) fn observe(episode: &Episode, ranges: &[f64], values: &mut [f32]) {
+/// Writes what the vehicle sees now.
+pub(crate) fn observe(episode: &Episode, ranges: &[f64], out: &mut Writer<'_>) {
     let (world, state) = (episode.world(), episode.state());
     let (domain, flight) = (&world.scenario().domain, &world.scenario().episode);
     let (position, goal) = (state.position, world.mission().goal_m);
@@ -148,7 +183,6 @@ pub(crate) fn observe(episode: &Episode, ranges: &[f64], values: &mut [f32]) {
     let distance = norm([goal[0] - position[0], goal[1] - position[1], 0.0]);
     let inside =
         |axis: usize| 2.0 * (position[axis] - domain.min_m[axis]) / (domain.max_m[axis] - domain.min_m[axis]) - 1.0;
-    let mut out = Writer { values, next: 0 };
 
     out.put(2.0 * distance / episode.limits().distance_m - 1.0, -1.0, 1.0);
     out.put(distance / sonar_range, 0.0, 1.0);

@@ -5,7 +5,7 @@
 //! 1 - r/d0 + 1 - 0.75 = 1.25 - r/d0 > 0, one that fails less than 1 - 1 = 0: whatever the scenario,
 //! nothing that fails out-scores anything that arrives, and of two arrivals the faster scores more.
 
-use crate::episode::Outcome;
+use crate::measures::Outcome;
 
 /// What a whole time limit costs.
 pub const TIME_WEIGHT: f64 = 0.75;

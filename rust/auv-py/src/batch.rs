@@ -1,6 +1,7 @@
 //! `Batch`: many episodes at once.
 
-use auv_env::episode::{Measures, Record};
+use auv_env::measures::{Measures, Record};
+use auv_env::observation::Mode;
 use auv_env::{Autoreset, Outcome};
 use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyIndexError, PyValueError};
@@ -127,6 +128,11 @@ impl Batch {
         info.set_item("is_success", column(py, &rows, |row| row.outcome == Outcome::Goal))?;
         let code = |row: &Measures| OUTCOMES.iter().position(|outcome| *outcome == row.outcome).unwrap_or(0) as i64;
         info.set_item("outcome", column(py, &rows, code))?;
+        if self.0.mode() == Mode::Replan {
+            info.set_item("planning_s", column(py, &rows, |row| row.planning_s))?;
+            info.set_item("failed_plans", column(py, &rows, |row| row.failed_plans as i64))?;
+            info.set_item("plan_feasible", column(py, &rows, |row| row.plan_feasible))?;
+        }
         Ok(info)
     }
 

@@ -1,20 +1,24 @@
 //! `Source` and `Episode`.
 
-use auv_env::observation;
+use auv_env::measures::Record;
+use auv_env::observation::{self, Mode};
+use auv_env::replan::{Delay, Settings};
+use auv_planners::Control;
 use auv_world::math::Vec3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::errors;
+use crate::interrupt;
 use crate::points;
 use crate::scenario::{Scenario, parameters};
 use crate::world::World;
 
 /// Blocks of the observation: (name, start, length, low, high, meaning).
 #[pyfunction]
-pub fn observation_layout(dimensions: u8) -> Vec<(&'static str, usize, usize, f32, f32, &'static str)> {
-    observation::layout(dimensions)
+pub fn observation_layout(dimensions: u8, replan: bool) -> Vec<(&'static str, usize, usize, f32, f32, &'static str)> {
+    observation::layout(dimensions, if replan { Mode::Replan } else { Mode::Waypoint })
         .into_iter()
         .map(|block| (block.name, block.start, block.len, block.low, block.high, block.meaning))
         .collect()
@@ -44,9 +48,27 @@ impl Source {
         auv_env::Source::family(family, parameters(parameters_json)?).map(Self).map_err(errors::world)
     }
 
+    /// The same in re-plan mode; planning takes `planning_s` in a short, a long and the full window, or
+    /// `seconds_per_evaluation`.
+    fn replanning(
+        &self,
+        py: Python<'_>,
+        planner: &str,
+        parameters_json: &str,
+        windows: [f64; 2],
+        planning_s: [f64; 3],
+        seconds_per_evaluation: Option<f64>,
+    ) -> PyResult<Self> {
+        let delay = seconds_per_evaluation.map_or(Delay::Fixed(planning_s), Delay::PerEvaluation);
+        let settings = Settings { planner: planner.into(), parameters: parameters_json.into(), windows, delay };
+        let source = self.0.clone();
+        interrupt::run(py, |control| source.replanning(settings, control), errors::env).map(Self)
+    }
+
     /// The episode with this seed.
-    fn episode(&self, seed: u64) -> PyResult<Episode> {
-        self.0.episode(seed).map(Episode).map_err(errors::world)
+    fn episode(&self, py: Python<'_>, seed: u64) -> PyResult<Episode> {
+        let work = |control: &Control<'_>| self.0.begin(seed, Record::Everything, control);
+        interrupt::run(py, work, errors::env).map(Episode)
     }
 }
 
@@ -57,7 +79,7 @@ pub struct Episode(pub auv_env::Episode);
 
 impl Episode {
     fn see<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let length = observation::length(self.0.world().scenario().dimensions);
+        let length = observation::length(self.0.world().scenario().dimensions, self.0.mode());
         let array = PyArray1::zeros(py, length, false);
         let mut view = array.try_readwrite()?;
         self.0.observe(view.as_slice_mut()?);
@@ -74,7 +96,11 @@ impl Episode {
         py: Python<'py>,
         action: PyReadonlyArray1<'py, f32>,
     ) -> PyResult<(Bound<'py, PyArray1<f32>>, f64, bool)> {
-        let reward = self.0.step(action.as_slice()?).map_err(errors::env)?;
+        let (episode, action) = (&mut self.0, action.as_slice()?);
+        let reward = match episode.mode() {
+            Mode::Waypoint => episode.step(action).map_err(errors::env)?,
+            Mode::Replan => interrupt::run(py, |control| episode.act(action, control), errors::env)?,
+        };
         let over = self.0.state().outcome != auv_env::Outcome::Running;
         Ok((self.see(py)?, reward, over))
     }
@@ -99,6 +125,11 @@ impl Episode {
         info.set_item("map_changed", now.map_changed)?;
         info.set_item("is_success", now.outcome == auv_env::Outcome::Goal)?;
         info.set_item("outcome", now.outcome.name())?;
+        if self.0.mode() == Mode::Replan {
+            info.set_item("planning_s", now.planning_s)?;
+            info.set_item("failed_plans", now.failed_plans)?;
+            info.set_item("plan_feasible", now.plan_feasible)?;
+        }
         Ok(info)
     }
 
@@ -151,6 +182,12 @@ impl Episode {
     #[getter]
     fn waypoint<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         self.0.state().waypoint.map(|waypoint| points::point(py, waypoint))
+    }
+
+    /// The plan in flight, (n, 3) m, in re-plan mode.
+    #[getter]
+    fn plan<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        self.0.pilot().map(|pilot| points::table(py, &pilot.course.waypoints)).transpose()
     }
 
     /// Where the vehicle was after each tick, the start first, (k, 3) m.

@@ -45,6 +45,8 @@ pub fn env(error: EnvError) -> PyErr {
         EnvError::World(WorldError::Scenario { .. } | WorldError::Format { .. }) => ScenarioError::new_err(message),
         EnvError::World(error @ WorldError::File { .. }) => world(error),
         EnvError::Action { .. } => ActionError::new_err(message),
+        EnvError::Planning(PlanError::World(error @ WorldError::File { .. })) => world(error),
+        EnvError::Planning(_) | EnvError::Setting { .. } => PlanningError::new_err(message),
         _ => PyValueError::new_err(message),
     }
 }

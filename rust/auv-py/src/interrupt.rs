@@ -1,7 +1,9 @@
 //! Ctrl-C in the middle of long work that runs without the GIL.
 
+use std::cell::RefCell;
 use std::time::{Duration, Instant};
 
+use auv_planners::Control;
 use pyo3::prelude::*;
 
 /// Asks Python for signals now and then.
@@ -28,4 +30,20 @@ impl Signals {
     pub fn finish(self) -> PyResult<()> {
         self.error.map_or(Ok(()), Err)
     }
+}
+
+/// Works without the GIL; Ctrl-C stops it within a fraction of a second.
+pub fn run<T: Send, E: Send>(
+    py: Python<'_>,
+    work: impl FnOnce(&Control<'_>) -> Result<T, E> + Send,
+    error: impl FnOnce(E) -> PyErr,
+) -> PyResult<T> {
+    let (result, signals) = py.detach(|| {
+        let signals = RefCell::new(Signals::new());
+        let ask = || signals.borrow_mut().stop();
+        let result = work(&Control::ask(&ask));
+        (result, signals.into_inner())
+    });
+    signals.finish()?;
+    result.map_err(error)
 }

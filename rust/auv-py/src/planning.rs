@@ -1,7 +1,5 @@
 //! Planning: `plan`, `replan`, `path_cost`, `run_phases`.
 
-use std::cell::RefCell;
-
 use auv_planners::{Control, Cost, CostOptions, CostTerms, PlanError, protocol, registry, replanning};
 use auv_world::math::Vec3;
 use auv_world::settings;
@@ -10,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::errors;
-use crate::interrupt::Signals;
+use crate::interrupt;
 use crate::points;
 use crate::world::World;
 
@@ -32,14 +30,7 @@ type HarborReport<'py> = (Option<f64>, f64, Bound<'py, PyArray2<f64>>, Bound<'py
 
 /// Runs planning without the GIL; Ctrl-C stops it within a fraction of a second.
 fn run<T: Send>(py: Python<'_>, work: impl FnOnce(&Control<'_>) -> Result<T, PlanError> + Send) -> PyResult<T> {
-    let (result, signals) = py.detach(|| {
-        let signals = RefCell::new(Signals::new());
-        let ask = || signals.borrow_mut().stop();
-        let result = work(&Control::ask(&ask));
-        (result, signals.into_inner())
-    });
-    signals.finish()?;
-    result.map_err(errors::planning)
+    interrupt::run(py, work, errors::planning)
 }
 
 fn terms<'py>(py: Python<'py>, cost: &CostTerms) -> PyResult<Bound<'py, PyDict>> {

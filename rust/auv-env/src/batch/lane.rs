@@ -1,8 +1,11 @@
 //! One environment of a batch: its episode, what the last step gave, and how the last episode ended.
 
+use auv_planners::Control;
+
 use super::Autoreset;
-use crate::episode::{Episode, Measures, Outcome, Record};
+use crate::episode::Episode;
 use crate::error::EnvError;
+use crate::measures::{Measures, Outcome, Record};
 use crate::source::Source;
 
 /// One environment of a batch.
@@ -35,16 +38,22 @@ impl Lane {
     }
 
     /// Begins the episode with this seed.
-    pub(super) fn begin(&mut self, source: &Source, seed: u64, record: Record, observation: &mut [f32]) {
+    pub(super) fn begin(
+        &mut self,
+        source: &Source,
+        seed: u64,
+        record: Record,
+        control: &Control<'_>,
+        observation: &mut [f32],
+    ) {
         (self.reward, self.ended) = (0.0, false);
-        match source.world(seed) {
-            Ok(world) => {
-                let mut episode = Episode::recording(world, record);
+        match source.begin(seed, record, control) {
+            Ok(mut episode) => {
                 episode.observe(observation);
                 self.now = episode.measures();
                 self.episode = Some(episode);
             }
-            Err(error) => self.error = Some(error.into()),
+            Err(error) => self.error = Some(error),
         }
     }
 
@@ -62,6 +71,7 @@ impl Lane {
         &mut self,
         action: &[f32],
         autoreset: Autoreset,
+        control: &Control<'_>,
         begin: impl Fn(&mut Self, &mut [f32]),
         observation: &mut [f32],
     ) {
@@ -70,7 +80,7 @@ impl Lane {
             return;
         }
         let Some(episode) = &mut self.episode else { return };
-        match episode.step(action) {
+        match episode.act(action, control) {
             Ok(reward) => self.reward = reward,
             Err(error) => {
                 self.error = Some(error);

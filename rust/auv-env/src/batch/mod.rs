@@ -6,14 +6,19 @@
 mod lane;
 mod pool;
 
+use std::cell::RefCell;
+use std::sync::atomic::AtomicBool;
+
+use auv_planners::Control;
 use rayon::prelude::*;
 
 pub use lane::Lane;
 use pool::Pool;
 
-use crate::episode::{Episode, Record};
+use crate::episode::Episode;
 use crate::error::EnvError;
-use crate::observation;
+use crate::measures::Record;
+use crate::observation::Mode;
 use crate::source::Source;
 
 /// What follows when an episode ends.
@@ -45,8 +50,7 @@ pub struct Batch {
 impl Batch {
     /// `count` environments of `source` on `threads` threads, before their first episode.
     pub fn new(source: Source, count: usize, threads: usize, autoreset: Autoreset, record: Record) -> Self {
-        let dimensions = source.dimensions();
-        let widths = (usize::from(dimensions), observation::length(dimensions));
+        let widths = source.widths();
         let lanes = (0..count).map(|_| Lane::empty()).collect();
         Self { source, autoreset, record, lanes, pool: Pool::new(threads.min(count)), widths }
     }
@@ -54,6 +58,11 @@ impl Batch {
     /// The environments.
     pub fn lanes(&self) -> &[Lane] {
         &self.lanes
+    }
+
+    /// What actions decide.
+    pub fn mode(&self) -> Mode {
+        self.source.mode()
     }
 
     /// Entries of one action.
@@ -101,8 +110,8 @@ impl Batch {
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<(), EnvError> {
         let (source, record) = (self.source.clone(), self.record);
-        self.each(observations, stop, |index, lane, observation| match seeds[index] {
-            Some(seed) => lane.begin(&source, seed, record, observation),
+        self.each(observations, stop, |index, lane, observation, control| match seeds[index] {
+            Some(seed) => lane.begin(&source, seed, record, control, observation),
             None => lane.look(observation),
         })
     }
@@ -128,32 +137,44 @@ impl Batch {
             }
         }
         let (source, record) = (self.source.clone(), self.record);
-        self.each(observations, stop, |index, lane, observation| {
+        self.each(observations, stop, |index, lane, observation, control| {
             let action = &actions[index * width..(index + 1) * width];
             let begin = |lane: &mut Lane, observation: &mut [f32]| {
-                lane.begin(&source, seeds[index], record, observation);
+                lane.begin(&source, seeds[index], record, control, observation);
             };
-            lane.step(action, autoreset, begin, observation);
+            lane.step(action, autoreset, control, begin, observation);
         })
     }
 
-    /// Works on every environment and its row of `observations`, on all threads.
+    /// Works on every environment and its row of `observations`, on all threads, asking now and then whether to
+    /// `stop`.
     fn each(
         &mut self,
         observations: &mut [f32],
         stop: &mut dyn FnMut() -> bool,
-        work: impl Fn(usize, &mut Lane, &mut [f32]) + Sync,
+        work: impl Fn(usize, &mut Lane, &mut [f32], &Control<'_>) + Sync,
     ) -> Result<(), EnvError> {
         let width = self.widths.1;
         let chunks = self.lanes.chunks_mut(AT_ONCE).zip(observations.chunks_mut(AT_ONCE * width));
         for (chunk, (lanes, rows)) in chunks.enumerate() {
             let first = chunk * AT_ONCE;
-            let one = |(i, (lane, row)): (usize, (&mut Lane, &mut [f32]))| work(first + i, lane, row);
             match self.pool.running() {
-                None => lanes.iter_mut().zip(rows.chunks_exact_mut(width)).enumerate().for_each(one),
-                Some(threads) => threads.install(|| {
-                    lanes.par_iter_mut().zip(rows.par_chunks_exact_mut(width)).enumerate().for_each(one);
-                }),
+                None => {
+                    let asked = RefCell::new(&mut *stop);
+                    let ask = || (asked.borrow_mut())();
+                    let control = Control::ask(&ask);
+                    for (i, (lane, row)) in lanes.iter_mut().zip(rows.chunks_exact_mut(width)).enumerate() {
+                        work(first + i, lane, row, &control);
+                    }
+                }
+                Some(threads) => {
+                    let stopped = AtomicBool::new(false);
+                    let one = |(i, (lane, row)): (usize, (&mut Lane, &mut [f32]))| {
+                        work(first + i, lane, row, &Control::flag(&stopped));
+                    };
+                    let all = || lanes.par_iter_mut().zip(rows.par_chunks_exact_mut(width)).enumerate().for_each(one);
+                    pool::watched(threads, &stopped, stop, all);
+                }
             }
             if let Some((i, error)) = lanes.iter_mut().enumerate().find_map(|(i, lane)| Some((i, lane.error.take()?))) {
                 return Err(error.of(first + i));

@@ -3,7 +3,14 @@
 //! A process that forks takes a pool's memory along but not its threads: work given to it would wait for
 //! ever. So a pool knows whose it is, and another process makes its own.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+
 use rayon::{ThreadPool, ThreadPoolBuilder};
+
+/// Work is watched over at this interval.
+const BETWEEN_QUESTIONS: Duration = Duration::from_millis(50);
 
 /// A number of threads, started when they are first needed.
 #[derive(Debug)]
@@ -50,6 +57,23 @@ impl Pool {
             std::mem::forget(pool);
         }
     }
+}
+
+/// Work on the pool's threads, while this one asks now and then whether to `stop` and says so by the flag.
+pub fn watched(threads: &ThreadPool, stopped: &AtomicBool, stop: &mut dyn FnMut() -> bool, work: impl FnOnce() + Send) {
+    let (done, finished) = channel();
+    threads.in_place_scope(|scope| {
+        scope.spawn(move |_| {
+            work();
+            // Nobody waits any more after a panic, which the scope passes on.
+            let _sent = done.send(());
+        });
+        while finished.recv_timeout(BETWEEN_QUESTIONS) == Err(RecvTimeoutError::Timeout) {
+            if stop() {
+                stopped.store(true, Ordering::Relaxed);
+            }
+        }
+    });
 }
 
 impl Drop for Pool {

@@ -52,7 +52,7 @@ fn flown(family: &str, threads: usize, autoreset: Autoreset) -> Vec<u64> {
 /// The same from single episodes.
 fn alone(family: &str, autoreset: Autoreset) -> Vec<u64> {
     let source = source(family);
-    let mut observation = vec![0.0; observation::length(source.dimensions())];
+    let mut observation = vec![0.0; source.widths().1];
     let mut episodes: Vec<_> = (0..COUNT).map(|i| (0, source.episode(seed(i, 0)).unwrap(), false)).collect();
     let mut seen = Vec::new();
     for step in 0..240 {
