@@ -6,11 +6,12 @@ import inspect
 from pathlib import Path
 from typing import Any
 
-import auvgym.sb3
+import auvgym.sb3  # first: it says what to install
 from auvgym._extras import require
 from auvgym._names import unknown
 from auvgym.evaluation.seeds import training_seed
 from auvgym.training.config import TrainingConfig, TrainingError
+from auvgym.training.mixture import MixedVecEnv
 
 #: Algorithm -> where its class is.
 CLASSES = {
@@ -21,7 +22,7 @@ CLASSES = {
     "dqn": ("stable_baselines3", "DQN"),
 }
 #: Hyperparameters that are this package's own.
-OWN = ("policy", "n_envs", "normalize", "action_bias")
+OWN = ("policy", "n_envs", "mixture", "normalize", "action_bias")
 NORMALIZE = {
     None: None,
     "observations": {"norm_obs": True, "norm_reward": False},
@@ -57,12 +58,7 @@ def make_envs(config: TrainingConfig, statistics: Path | None) -> Any:
         config: the training.
         statistics: file of the normalisation to go on with.
     """
-    envs: Any = auvgym.sb3.make_vec_env(
-        config.environment,
-        n_envs=config.n_envs,
-        info_keywords=("is_success",),
-        env_kwargs=config.settings,
-    )
+    envs = _mixed(config)
     chosen = config.hyperparameters.get("normalize")
     if chosen not in NORMALIZE:
         names = [str(name) for name in NORMALIZE]
@@ -75,6 +71,29 @@ def make_envs(config: TrainingConfig, statistics: Path | None) -> Any:
         return normalize.load(str(statistics), envs)
     gamma = config.hyperparameters.get("gamma", 0.99)
     return normalize(envs, gamma=gamma, **kinds)
+
+
+def _mixed(config: TrainingConfig) -> Any:
+    """The environments, shared out among the entries of ``mixture`` if there is one."""
+    mixture = config.hyperparameters.get("mixture") or [{}]
+    listed = isinstance(mixture, list) and all(isinstance(one, dict) for one in mixture)
+    if not listed or len(mixture) > config.n_envs:
+        raise TrainingError(
+            f"mixture = {mixture!r}: must be a list of settings, no more than n_envs, as "
+            '[{"difficulty": "normal"}, {"difficulty": "hard"}]'
+        )
+    parts = [
+        auvgym.sb3.make_vec_env(
+            config.environment,
+            n_envs=config.n_envs // len(mixture) + (index < config.n_envs % len(mixture)),
+            info_keywords=("is_success",),
+            env_kwargs={**config.settings, **settings},
+        )
+        for index, settings in enumerate(mixture)
+    ]
+    if len(parts) == 1:
+        return parts[0]
+    return MixedVecEnv(parts)
 
 
 def make_model(config: TrainingConfig, envs: Any) -> Any:
