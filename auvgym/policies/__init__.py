@@ -11,6 +11,7 @@ from auvgym.policies.agents import CodeWarning
 from auvgym.policies.base import Knows, Policy, PolicyError, ScriptedPolicy, begin
 from auvgym.policies.planner import PlannerPolicy
 from auvgym.policies.registry import frozen_parameters, list_policies, make
+from auvgym.policies.shipped import ShippedAgent, list_agents
 
 __all__ = [
     "CodeWarning",
@@ -19,8 +20,10 @@ __all__ = [
     "Policy",
     "PolicyError",
     "ScriptedPolicy",
+    "ShippedAgent",
     "begin",
     "frozen_parameters",
+    "list_agents",
     "list_policies",
     "make",
 ]

@@ -20,6 +20,7 @@ from auvgym.policies.iifds_reactive import IifdsReactivePolicy
 from auvgym.policies.lane import LanePolicy
 from auvgym.policies.planner import PlannerPolicy
 from auvgym.policies.random_actions import RandomPolicy
+from auvgym.policies.shipped import ShippedAgent, agent_hash, agents_can_fly, list_agents
 from auvgym.policies.sonar_rule import SonarRulePolicy
 from auvgym.policies.straight import StraightPolicy
 
@@ -38,9 +39,12 @@ SCRIPTED: dict[str, type[ScriptedPolicy]] = {
 
 
 def list_policies() -> list[str]:
-    """Every name that :func:`make` knows: the floors and references, then one per planner."""
+    """Every name that can fly here: floors and references, trained agents, one per planner.
+
+    Trained agents need the extra ``agents``.
+    """
     planners = [name for name in auvgym.list_planners() if name not in SCRIPTED]
-    return [*SCRIPTED, *planners]
+    return [*SCRIPTED, *(list_agents() if agents_can_fly() else []), *planners]
 
 
 def make(name: str, seed: int = 0, **parameters: Any) -> Policy:
@@ -62,6 +66,9 @@ def make(name: str, seed: int = 0, **parameters: Any) -> Policy:
         return SCRIPTED[name](seed=seed, **parameters)
     if name in auvgym.list_planners() or name in ompl.PLANNERS:
         return PlannerPolicy(planner=name, seed=seed, **parameters)
+    if name in list_agents():
+        _check_parameters(name, ShippedAgent, parameters, ("seed", "agent"))
+        return ShippedAgent(name, seed=seed, **parameters)
     for ending, agent in AGENTS.items():
         if name.endswith(ending):
             _check_parameters(name, agent, parameters, ("seed", "path"))
@@ -74,7 +81,8 @@ def make(name: str, seed: int = 0, **parameters: Any) -> Policy:
 
 def is_shipped(name: str) -> bool:
     """Whether a policy is auvgym's own code, which needs no guard."""
-    return name in SCRIPTED or name in auvgym.list_planners() or name in ompl.PLANNERS
+    ours = (SCRIPTED, list_agents(), auvgym.list_planners(), ompl.PLANNERS)
+    return any(name in names for names in ours)
 
 
 def frozen_parameters(name: str, parameters: Mapping[str, Any]) -> dict[str, Any]:
@@ -85,6 +93,8 @@ def frozen_parameters(name: str, parameters: Mapping[str, Any]) -> dict[str, Any
     Raises:
         PolicyError: the agent's file cannot be read.
     """
+    if name in list_agents():
+        return {"sha256": agent_hash(name), **parameters}
     if not name.endswith(tuple(AGENTS)):
         return dict(parameters)
     return {"sha256": file_hash(name), **parameters}
