@@ -58,7 +58,7 @@ def make_envs(config: TrainingConfig, statistics: Path | None) -> Any:
         config: the training.
         statistics: file of the normalisation to go on with.
     """
-    envs = _mixed(config)
+    envs = plain_envs(config)
     chosen = config.hyperparameters.get("normalize")
     if chosen not in NORMALIZE:
         names = [str(name) for name in NORMALIZE]
@@ -73,8 +73,8 @@ def make_envs(config: TrainingConfig, statistics: Path | None) -> Any:
     return normalize(envs, gamma=gamma, **kinds)
 
 
-def _mixed(config: TrainingConfig) -> Any:
-    """The environments, shared out among the entries of ``mixture`` if there is one."""
+def plain_envs(config: TrainingConfig) -> Any:
+    """The environments themselves, shared out among the entries of ``mixture`` if there is one."""
     mixture = config.hyperparameters.get("mixture") or [{}]
     listed = isinstance(mixture, list) and all(isinstance(one, dict) for one in mixture)
     if not listed or len(mixture) > config.n_envs:
@@ -104,7 +104,7 @@ def make_model(config: TrainingConfig, envs: Any) -> Any:
     """
     algorithm = algorithm_class(config.algorithm)
     _check_actions(algorithm, config, envs.action_space)
-    ours, theirs, policys = _sorted(config, algorithm)
+    ours, theirs, policys = sorted_hyperparameters(config, algorithm)
     try:
         model = algorithm(
             ours["policy"], envs, seed=config.seed, device="cpu", policy_kwargs=policys, **theirs
@@ -124,10 +124,14 @@ def seed_envs(envs: Any, config: TrainingConfig, part: int) -> None:
     envs.seed(training_seed(config.seed, part))
 
 
-def _sorted(
+def sorted_hyperparameters(
     config: TrainingConfig, algorithm: Any
 ) -> tuple[dict[str, Any], dict[str, Any], dict[str, Any]]:
-    """Hyperparameters: ours, the algorithm's, its policy's."""
+    """Hyperparameters apart: this package's, the algorithm's, its policy's.
+
+    Raises:
+        TrainingError: one that nobody has, or a value that is none.
+    """
     given = dict(config.hyperparameters)
     policy_name = given.get("policy", "MlpPolicy")
     if policy_name not in algorithm.policy_aliases:
