@@ -93,8 +93,9 @@ def train(
         f"{result.timesteps} legs in {result.seconds:.0f} s; best on the validation seeds after "
         f"{best.timesteps}:",
         markup=False,
+        soft_wrap=True,
     )
-    console.print(_line(best), markup=False)
+    console.print(_line(best), markup=False, soft_wrap=True)
     console.print(f"Agent:    {folder / 'agent.onnx'}", soft_wrap=True, markup=False)
     console.print(f"Curve:    {folder / 'curve.csv'}", soft_wrap=True, markup=False)
 
@@ -114,11 +115,16 @@ def _watched(config: TrainingConfig, folder: Path, resume: bool, fresh: bool) ->
                 resume=resume,
                 fresh=fresh,
                 on_progress=lambda done, total: bar.update(task, completed=done, total=total),
-                on_row=lambda row: console.print(_line(row), markup=False),
+                on_row=lambda row: console.print(_line(row), markup=False, soft_wrap=True),
             )
         except KeyboardInterrupt:
             bar.stop()
-            text = f"Stopped. {folder} is kept; the same command with --resume goes on from there."
+            kept = (folder / "last.zip").is_file()
+            text = (
+                f"Stopped. {folder} is kept; the same command with --resume goes on from there."
+                if kept
+                else "Stopped before there was anything to keep."
+            )
             console.print(text, style="yellow", markup=False, soft_wrap=True)
             raise typer.Exit(INTERRUPTED) from None
 

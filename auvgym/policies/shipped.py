@@ -76,7 +76,7 @@ class ShippedAgent:
     def reset(self, env: Any) -> None:
         """Take the network for this environment."""
         trained_for = env.spec.id if env.spec is not None else type(env.unwrapped).__name__
-        if "n" in vars(env.action_space):  # discrete: when to plan
+        if hasattr(env.action_space, "n"):  # discrete: when to plan
             trained_for = f"{trained_for}/{REPLAN}"
         if trained_for not in self._files:
             raise PolicyError(f'policy "{self.name}": {unknown("task", trained_for, self._files)}')

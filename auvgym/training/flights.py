@@ -13,6 +13,7 @@ import numpy.typing as npt
 from gymnasium.vector import AutoresetMode
 
 from auvgym.evaluation.summary import wilson_interval
+from auvgym.training.config import TrainingError
 
 #: Observations (n, k) and which of them begin an episode (n,) -> actions (n, ...).
 Act = Callable[[npt.NDArray[np.float32], npt.NDArray[np.bool_]], npt.NDArray[Any]]
@@ -54,16 +55,22 @@ class Examination:
         environment: a registered id.
         seeds: of ``reset``, one for each environment of the batch.
         settings: arguments of the environment.
+
+    Raises:
+        TrainingError, ValueError: a setting that the environment does not have, or refuses.
     """
 
     def __init__(self, environment: str, seeds: Sequence[int], settings: dict[str, Any]) -> None:
         self.seeds = list(seeds)
-        made = gymnasium.make_vec(
-            environment,
-            num_envs=len(self.seeds),
-            autoreset_mode=AutoresetMode.SAME_STEP,
-            **settings,
-        )
+        try:
+            made = gymnasium.make_vec(
+                environment,
+                num_envs=len(self.seeds),
+                autoreset_mode=AutoresetMode.SAME_STEP,
+                **settings,
+            )
+        except TypeError as error:  # a setting that the environment does not have
+            raise TrainingError(f"{environment}: {error}") from error
         self._envs: Any = made.unwrapped
 
     def fly(self, act: Act) -> Flown:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -60,6 +61,16 @@ class TrainingFolder:
     def exists(self) -> bool:
         """Whether a training has been here."""
         return self.config.is_file()
+
+    def clear(self) -> None:
+        """Remove a training that has been here, and nothing else."""
+        which = ("best", "last")
+        files = [self.config, self.state, self.curve, self.onnx, self.replay_buffer]
+        files += [self.onnx.with_suffix(".json")]
+        files += [path for one in which for path in (self.model(one), self.statistics(one))]
+        for file in files:
+            file.unlink(missing_ok=True)
+        shutil.rmtree(self.tensorboard, ignore_errors=True)
 
     def begin(self) -> None:
         """Make the folder.

@@ -82,15 +82,18 @@ def plain_envs(config: TrainingConfig) -> Any:
             f"mixture = {mixture!r}: must be a list of settings, no more than n_envs, as "
             '[{"difficulty": "normal"}, {"difficulty": "hard"}]'
         )
-    parts = [
-        auvgym.sb3.make_vec_env(
-            config.environment,
-            n_envs=config.n_envs // len(mixture) + (index < config.n_envs % len(mixture)),
-            info_keywords=("is_success",),
-            env_kwargs={**config.settings, **settings},
-        )
-        for index, settings in enumerate(mixture)
-    ]
+    try:
+        parts = [
+            auvgym.sb3.make_vec_env(
+                config.environment,
+                n_envs=config.n_envs // len(mixture) + (index < config.n_envs % len(mixture)),
+                info_keywords=("is_success",),
+                env_kwargs={**config.settings, **settings},
+            )
+            for index, settings in enumerate(mixture)
+        ]
+    except TypeError as error:  # a setting that the environment does not have
+        raise TrainingError(f"{config.environment}: {error}") from error
     if len(parts) == 1:
         return parts[0]
     return MixedVecEnv(parts)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import platform
 import shlex
-import shutil
 import sys
 import time
 from dataclasses import dataclass, replace
@@ -77,8 +76,8 @@ def train(
         state = _resumed(config, place)
     else:
         state = {"timesteps": 0, "seconds": 0.0, "parts": 0, "commands": []}
-        if fresh and place.exists:
-            shutil.rmtree(place.path)
+        if fresh:
+            place.clear()
         place.begin()
     torch = require("torch", "train")
     threads = torch.get_num_threads()
