@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 import warnings
 from itertools import combinations, product
 from pathlib import Path
@@ -360,5 +362,28 @@ def test_shipped_agents_fly_by_name() -> None:
         agent = policies.make("ppo")
         policies.begin(agent, env, observation, info)
         assert env.action_space.contains(agent.act(observation, info))
-    with pytest.raises(policies.PolicyError, match="have been trained anew"):
-        policies.make("ppo", sha256="0")
+    assert policies.frozen_parameters("ppo", {}) == {}
+    odd = gymnasium.make("CartPole-v1")
+    with pytest.raises(policies.PolicyError, match="unknown task 'CartPole-v1"):
+        policies.make("ppo").reset(odd)
+
+
+def test_the_judgement_of_the_shipped_agents(tmp_path: Path) -> None:
+    pytest.importorskip("onnxruntime")
+    script = Path(__file__).parents[1] / "baselines" / "agents" / "judge_agents.py"
+    done = subprocess.run(
+        [sys.executable, script, "--episodes", "3", "--workers", "1", "--env", "AUVHarbor2D-v0"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    lines = [line.split(" | ") for line in done.stdout.splitlines()]
+    assert [line[2] for line in lines] == ["ppo", "sonar-rule", "visibility"] * 2
+    for agent, *others in (lines[:3], lines[3:]):
+        for other in others:
+            solved, time_share = float(other[3].split()[0]), float(other[4])
+            gained, faster = (float(cell.split()[0]) for cell in other[6:8])
+            assert gained == pytest.approx(float(agent[3].split()[0]) - solved, abs=0.11)
+            assert faster == pytest.approx(float(agent[4]) - time_share, abs=2e-3)

@@ -20,7 +20,7 @@ from auvgym.policies.iifds_reactive import IifdsReactivePolicy
 from auvgym.policies.lane import LanePolicy
 from auvgym.policies.planner import PlannerPolicy
 from auvgym.policies.random_actions import RandomPolicy
-from auvgym.policies.shipped import ShippedAgent, agent_hash, agents_can_fly, list_agents
+from auvgym.policies.shipped import ShippedAgent, agents_can_fly, list_agents
 from auvgym.policies.sonar_rule import SonarRulePolicy
 from auvgym.policies.straight import StraightPolicy
 
@@ -88,13 +88,12 @@ def is_shipped(name: str) -> bool:
 def frozen_parameters(name: str, parameters: Mapping[str, Any]) -> dict[str, Any]:
     """The parameters as results keep them: an agent's with the hash of its file.
 
-    Two files of one name are two policies, and :func:`make` refuses a file of another hash.
+    Two files of one name are two policies, and :func:`make` refuses a file of another hash. The
+    agents that come with auvgym are bound to its version, as all of its policies.
 
     Raises:
         PolicyError: the agent's file cannot be read.
     """
-    if name in list_agents():
-        return {"sha256": agent_hash(name), **parameters}
     if not name.endswith(tuple(AGENTS)):
         return dict(parameters)
     return {"sha256": file_hash(name), **parameters}

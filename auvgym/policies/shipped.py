@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from functools import lru_cache
 from importlib import resources
 from importlib.util import find_spec
@@ -10,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from auvgym._names import unknown
-from auvgym.policies.agents import OnnxPolicy, file_hash
+from auvgym.policies.agents import OnnxPolicy
 from auvgym.policies.base import Action, Knows, Observation, PolicyError
 
 REPLAN = "replan"
@@ -35,12 +34,6 @@ def agents_can_fly() -> bool:
     return find_spec("onnxruntime") is not None
 
 
-def agent_hash(name: str) -> str:
-    """16 hex digits over all networks of an agent: one that was trained anew is another."""
-    files = [file_hash(str(path)) for path in list_agents()[name].values()]
-    return hashlib.sha256("".join(files).encode()).hexdigest()[:16]
-
-
 class ShippedAgent:
     """A trained agent that comes with auvgym (extra ``agents``).
 
@@ -50,27 +43,21 @@ class ShippedAgent:
     Args:
         agent: its name, one of :func:`list_agents`.
         seed: unused; an agent is a function of what it sees.
-        sha256: of its networks (:func:`agent_hash`), to be held to.
 
     Raises:
-        PolicyError: no such agent, other networks than asked for, or none for the environment.
+        PolicyError: no such agent, or it has no network for the environment.
         ImportError: without onnxruntime.
     """
 
     knows: Knows = "sensors"
 
-    def __init__(self, agent: str, seed: int = 0, sha256: str | None = None) -> None:
+    def __init__(self, agent: str, seed: int = 0) -> None:
         agents = list_agents()
         if agent not in agents:
             raise PolicyError(unknown("agent", agent, agents))
         self.name = agent
         self.description = f"trained network, for {', '.join(agents[agent])}"
         self._files = agents[agent]
-        if sha256 is not None and agent_hash(agent) != sha256:
-            raise PolicyError(
-                f'policy "{agent}": its networks have hash {agent_hash(agent)}, {sha256} is asked '
-                "for; they have been trained anew"
-            )
         self._loaded: dict[str, OnnxPolicy] = {}
 
     def reset(self, env: Any) -> None:

@@ -1,7 +1,7 @@
 """Flies the shipped agents on the test seeds beside scripted policies, and writes ``agents.md``.
 
 ``python baselines/agents/judge_agents.py --workers 2``; what was flown is kept in results/agents
-and not flown again.
+and not flown again. Remove that folder when a network was trained anew.
 """
 
 from __future__ import annotations
