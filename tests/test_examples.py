@@ -77,6 +77,23 @@ def test_train_sb3(tmp_path: Path) -> None:
     assert (tmp_path / "ppo.zip").is_file()
 
 
+def test_ppo_in_one_file(tmp_path: Path) -> None:
+    pytest.importorskip("torch")
+    sizes = ["--envs", "8", "--steps", "32", "--batch", "128", "--timesteps", "512"]
+    printed = run_example("ppo_single_file.py", *sizes, "--tests", "4", folder=tmp_path)
+    assert re.search(r"^ +512 legs .* arrived \d+/\d+$", printed, re.MULTILINE)
+    assert re.search(r"^arrived: \d+\.\d%$", printed, re.MULTILINE)
+
+
+def test_train_rllib(tmp_path: Path) -> None:
+    pytest.importorskip("torch")
+    pytest.importorskip("ray")
+    pytest.importorskip("tree")
+    sizes = ["--iterations", "1", "--batch", "256", "--envs", "4", "--runners", "0"]
+    printed = run_example("train_rllib.py", *sizes, folder=tmp_path)
+    assert re.search(r"^ +0 +\d+ legs  return", printed, re.MULTILINE)
+
+
 def test_plan_real_ocean(tmp_path: Path) -> None:
     ocean_files = pytest.importorskip("ocean_files")
     currents = ocean_files.write(ocean_files.current_file(), tmp_path / "currents.nc")

@@ -34,7 +34,7 @@ def mine(tmp_path: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize("name", ["demo", "paper", "replan", "standard"])
+@pytest.mark.parametrize("name", ["demo", "paper", "replan", "standard", "strong-currents"])
 def test_every_world_of_the_shipped_suites_is_as_it_was_frozen(name: str) -> None:
     suite = load_suite(name)
     assert suite.frozen
@@ -48,7 +48,14 @@ def test_every_world_of_the_shipped_suites_is_as_it_was_frozen(name: str) -> Non
 
 
 def test_the_suites_hold_what_they_promise() -> None:
-    assert set(evaluation.list_suites()) == {"demo", "ocean", "paper", "replan", "standard"}
+    assert set(evaluation.list_suites()) == {
+        "demo",
+        "ocean",
+        "paper",
+        "replan",
+        "standard",
+        "strong-currents",
+    }
     paper, standard = load_suite("paper"), load_suite("standard")
     assert set(paper.strata.values()) == {30}
     by_environment: dict[str, int] = {}

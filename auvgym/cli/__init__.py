@@ -16,6 +16,7 @@ from auvgym.cli.replay import replay
 from auvgym.cli.report import report
 from auvgym.cli.reproduce import reproduce
 from auvgym.cli.suite import suite
+from auvgym.cli.train import train
 from auvgym.cli.verify import verify
 
 app = typer.Typer(
@@ -42,6 +43,7 @@ def _root(
 app.command("list")(list_names)
 app.command("plan")(plan)
 app.command("evaluate")(evaluate)
+app.command("train")(train)
 app.command("leaderboard")(leaderboard)
 app.command("replay")(replay)
 app.command("reproduce")(reproduce)

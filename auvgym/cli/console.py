@@ -64,13 +64,14 @@ def print_version(wanted: bool) -> None:
         raise typer.Exit
 
 
-def parse_settings(settings: list[str] | None) -> dict[str, Any]:
+def parse_settings(settings: list[str] | None, option: str = "--set") -> dict[str, Any]:
     """``["window=10", "cost=time"]`` as ``{"window": 10, "cost": "time"}``: JSON, else text."""
     parsed: dict[str, Any] = {}
     for setting in settings or []:
         key, equals, value = setting.partition("=")
         if not equals or not key.isidentifier():
-            raise ValueError(f'--set "{setting}": it is written key=value, e.g. --set window=10')
+            text = f'{option} "{setting}": it is written key=value, e.g. {option} window=10'
+            raise ValueError(text)
         try:
             parsed[key] = json.loads(value)
         except json.JSONDecodeError:

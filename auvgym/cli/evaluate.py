@@ -29,6 +29,12 @@ def evaluate(
     ] = "",
     episodes: Annotated[int, typer.Option(help="How many seeds to fly.")] = 64,
     first_seed: Annotated[int, typer.Option(help="The first of them.")] = 0,
+    seeds: Annotated[
+        str | None,
+        typer.Option(
+            help="Or a range by name: test (agents are judged there), validation, training, boards."
+        ),
+    ] = None,
     suite: Annotated[
         str | None,
         typer.Option(help="Fly this suite instead (a name, or a TOML file)."),
@@ -59,12 +65,18 @@ def evaluate(
     """Evaluate one policy: success with its interval, time, energy, cost.
 
     [dim]Example:[/] auvgym evaluate --policy straight --difficulty hard --episodes 512 --workers 2
+
+    [dim]Example:[/] auvgym evaluate --policy ppo --seeds test --episodes 1000
     """
     from auvgym import evaluation
     from auvgym.cli.flying import fly_with_progress, show
 
     if suite is not None and env_settings:
         raise ValueError("--env-set: a suite says what its environments are set to, leave it out")
+    if seeds is not None:
+        if first_seed or suite is not None:
+            raise ValueError(f"--seeds {seeds}: is given without --first-seed and --suite")
+        first_seed = evaluation.seeds_of(seeds, episodes).start
     instances = (
         evaluation.load_suite(suite)
         if suite is not None

@@ -77,6 +77,9 @@ def _policies() -> Iterator[tuple[str, str]]:
     for name in [*auvgym.list_policies(), *policies.list_triggers()]:
         policy = policies.make(name)
         yield name, f"{getattr(policy, 'description', '')} (knows: {policy.knows})"
+    for name in policies.list_agents():
+        if name not in auvgym.list_policies():
+            yield name, 'needs pip install "auvgym[agents]"'
 
 
 def _suites() -> Iterator[tuple[str, str]]:

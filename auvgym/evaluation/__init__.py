@@ -10,6 +10,7 @@ from auvgym.evaluation.flight import Flight
 from auvgym.evaluation.replay import Replay, ReplayError, replay
 from auvgym.evaluation.result import EpisodeResult, PolicySpec
 from auvgym.evaluation.runner import fitting, run
+from auvgym.evaluation.seeds import SEEDS, seeds_of
 from auvgym.evaluation.store import Store, StoreError
 from auvgym.evaluation.suite import Instance, Suite, SuiteError, single_suite
 from auvgym.evaluation.suite_file import list_suites, load_suite
@@ -17,6 +18,7 @@ from auvgym.evaluation.summary import PolicySummary, summarise, wilson_interval
 from auvgym.evaluation.verify import Verification, verify
 
 __all__ = [
+    "SEEDS",
     "EpisodeResult",
     "Flight",
     "Instance",
@@ -34,6 +36,7 @@ __all__ = [
     "load_suite",
     "replay",
     "run",
+    "seeds_of",
     "single_suite",
     "summarise",
     "verify",

@@ -26,6 +26,7 @@ from auvgym.evaluation.suite_file import list_suites, load_suite
 from auvgym.evaluation.task import Task, environment, run_task
 from auvgym.evaluation.workers import ProcessDiedError, run_tasks
 from auvgym.policies.registry import is_shipped
+from auvgym.policies.shipped import list_agents
 
 # Called with the number of rows looked at so far, and the number in all.
 OnRow = Callable[[int, int], None]
@@ -82,7 +83,9 @@ def verify(
         if not _impossible(row):
             sound.append(row)
     differences += _suites(sound)
-    again = _spread([row for row in sound if is_shipped(row.policy)], refly)
+    # A network's arithmetic is onnxruntime's, whose last bits may differ from machine to machine.
+    reflown = [row for row in sound if is_shipped(row.policy) and row.policy not in list_agents()]
+    again = _spread(reflown, refly)
     checks = [*[(row, False) for row in sound], *[(row, True) for row in again]]
     done = 0
     with closing(_checked(checks, workers)) as found_by_row:

@@ -13,6 +13,7 @@ from auvgym.policies.base import Knows, Policy, PolicyError, ScriptedPolicy, beg
 from auvgym.policies.planner import PlannerPolicy
 from auvgym.policies.registry import frozen_parameters, list_policies, list_triggers, make
 from auvgym.policies.triggers import Trigger
+from auvgym.policies.shipped import ShippedAgent, list_agents
 
 __all__ = [
     "CodeWarning",
@@ -21,9 +22,11 @@ __all__ = [
     "Policy",
     "PolicyError",
     "ScriptedPolicy",
+    "ShippedAgent",
     "Trigger",
     "begin",
     "frozen_parameters",
+    "list_agents",
     "list_policies",
     "list_triggers",
     "make",

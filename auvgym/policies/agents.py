@@ -20,6 +20,8 @@ _ALGORITHMS = {
     "stable_baselines3.common.policies": ("stable_baselines3", "PPO"),
     "stable_baselines3.sac.policies": ("stable_baselines3", "SAC"),
     "stable_baselines3.td3.policies": ("stable_baselines3", "TD3"),
+    "stable_baselines3.dqn.policies": ("stable_baselines3", "DQN"),
+    "sb3_contrib.tqc.policies": ("sb3_contrib", "TQC"),
 }
 
 
@@ -28,7 +30,7 @@ class CodeWarning(UserWarning):
 
 
 class _Agent:
-    """What agents share: they see observations only, and remember nothing.
+    """What agents share: they see observations only.
 
     Attributes:
         name: the file's path, as it was given.
@@ -52,9 +54,13 @@ class _Agent:
 class OnnxPolicy(_Agent):
     """An agent in an ONNX file: (1, n) float32 observations in, (1, d) actions out.
 
+    An action is float32, clipped to [-1, 1], or int64 where actions are discrete. An agent that
+    remembers has further float32 inputs (1, k) and as many outputs after the action: zeros go in
+    where an episode begins, then what came out.
+
     Beside ``agent.onnx`` lies its card ``agent.json``: an object with ``schema`` (1), ``name``,
     ``environment`` (a Gymnasium id, or a list of them) and whatever else is worth knowing. The file
-    is data: reading and running it runs nobody's code. Actions are clipped to [-1, 1].
+    is data: reading and running it runs nobody's code.
 
     Args:
         path: of the ONNX file.
@@ -81,23 +87,44 @@ class OnnxPolicy(_Agent):
         except Exception as error:  # onnxruntime's own errors derive from nothing narrower
             raise PolicyError(f'policy "{path}": is not an ONNX model ({error})') from error
         inputs, outputs = self._session.get_inputs(), self._session.get_outputs()
-        if len(inputs) != 1 or inputs[0].type != "tensor(float)":
+        memory = inputs[1:]
+        if (
+            any(one.type != "tensor(float)" for one in inputs)
+            or len(outputs) < 1 + len(memory)
+            or not all(isinstance(one.shape[-1], int) for one in memory)
+        ):
             raise PolicyError(
                 f'policy "{path}": the model takes {[(one.name, one.type) for one in inputs]}; '
-                "one input of float32 observations (1, n) is needed"
+                "float32 observations (1, n) are needed, and what it remembers (1, k) if an output "
+                "follows the action for each"
             )
-        self._input, self._output = inputs[0].name, outputs[0].name
-        self._entries = inputs[0].shape[-1]
+        self._input, self._entries = inputs[0].name, inputs[0].shape[-1]
+        self._widths = {one.name: int(one.shape[-1]) for one in memory}
+        self._outputs = [one.name for one in outputs[: 1 + len(memory)]]
+        self.begin()
 
-    def act(self, observation: Observation, info: dict[str, Any]) -> Action:
-        """The action, (d,) float32."""
+    def reset(self, observation: Observation, info: dict[str, Any]) -> None:
+        """Forget the last episode."""
+        self.begin()
+
+    def begin(self) -> None:
+        """Remember nothing."""
+        self._memory = {
+            name: np.zeros((1, width), np.float32) for name, width in self._widths.items()
+        }
+
+    def act(self, observation: Observation, info: dict[str, Any]) -> Action | int:
+        """The action: (d,) float32, or a number where actions are discrete."""
         if isinstance(self._entries, int) and len(observation) != self._entries:
             raise PolicyError(
                 f'policy "{self.name}": the model takes {self._entries} entries, this environment '
                 f"has {len(observation)}; its card says {self.card['environment']!r}"
             )
         given = np.asarray(observation, dtype=np.float32)[None]
-        (action,) = self._session.run([self._output], {self._input: given})
+        action, *remembered = self._session.run(self._outputs, {self._input: given, **self._memory})
+        self._memory = dict(zip(self._widths, remembered, strict=True))
+        if action.dtype.kind == "i":
+            return int(action.reshape(-1)[0])
         return np.clip(np.asarray(action, dtype=np.float32).reshape(-1), -1.0, 1.0)
 
 
@@ -143,9 +170,11 @@ class Sb3Policy(_Agent):
         if not self._deterministic:
             self._model.set_random_seed((self.seed + int(info["episode_seed"])) % 2**31)
 
-    def act(self, observation: Observation, info: dict[str, Any]) -> Action:
-        """The action, (d,) float32."""
+    def act(self, observation: Observation, info: dict[str, Any]) -> Action | int:
+        """The action: (d,) float32, or a number where actions are discrete."""
         action, _ = self._model.predict(observation, deterministic=self._deterministic)
+        if np.asarray(action).dtype.kind == "i":
+            return int(action)
         return np.clip(np.asarray(action, dtype=np.float32).reshape(-1), -1.0, 1.0)
 
 

@@ -20,6 +20,7 @@ from auvgym.policies.iifds_reactive import IifdsReactivePolicy
 from auvgym.policies.lane import LanePolicy
 from auvgym.policies.planner import PlannerPolicy
 from auvgym.policies.random_actions import RandomPolicy
+from auvgym.policies.shipped import ShippedAgent, agents_can_fly, list_agents
 from auvgym.policies.sonar_rule import SonarRulePolicy
 from auvgym.policies.straight import StraightPolicy
 from auvgym.policies.triggers import TRIGGERS
@@ -39,9 +40,12 @@ SCRIPTED: dict[str, type[ScriptedPolicy]] = {
 
 
 def list_policies() -> list[str]:
-    """Every name that :func:`make` knows: the floors and references, then one per planner."""
+    """Every name that can fly here: floors and references, trained agents, one per planner.
+
+    Trained agents need the extra ``agents``.
+    """
     planners = [name for name in auvgym.list_planners() if name not in SCRIPTED]
-    return [*SCRIPTED, *planners]
+    return [*SCRIPTED, *(list_agents() if agents_can_fly() else []), *planners]
 
 
 def list_triggers() -> list[str]:
@@ -71,6 +75,9 @@ def make(name: str, seed: int = 0, **parameters: Any) -> Policy:
         return TRIGGERS[name](seed=seed, **parameters)
     if name in auvgym.list_planners() or name in ompl.PLANNERS:
         return PlannerPolicy(planner=name, seed=seed, **parameters)
+    if name in list_agents():
+        _check_parameters(name, ShippedAgent, parameters, ("seed", "agent"))
+        return ShippedAgent(name, seed=seed, **parameters)
     for ending, agent in AGENTS.items():
         if name.endswith(ending):
             _check_parameters(name, agent, parameters, ("seed", "path"))
@@ -83,14 +90,15 @@ def make(name: str, seed: int = 0, **parameters: Any) -> Policy:
 
 def is_shipped(name: str) -> bool:
     """Whether a policy is auvgym's own code, which needs no guard."""
-    names = (SCRIPTED, TRIGGERS, auvgym.list_planners(), ompl.PLANNERS)
-    return any(name in known for known in names)
+    ours = (SCRIPTED, TRIGGERS, list_agents(), auvgym.list_planners(), ompl.PLANNERS)
+    return any(name in names for names in ours)
 
 
 def frozen_parameters(name: str, parameters: Mapping[str, Any]) -> dict[str, Any]:
     """The parameters as results keep them: an agent's with the hash of its file.
 
-    Two files of one name are two policies, and :func:`make` refuses a file of another hash.
+    Two files of one name are two policies, and :func:`make` refuses a file of another hash. The
+    agents that come with auvgym are bound to its version, as all of its policies.
 
     Raises:
         PolicyError: the agent's file cannot be read.
