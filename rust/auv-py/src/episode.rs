@@ -2,7 +2,7 @@
 
 use auv_env::observation;
 use auv_world::math::Vec3;
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
@@ -47,6 +47,20 @@ impl Source {
     /// The episode with this seed.
     fn episode(&self, seed: u64) -> PyResult<Episode> {
         self.0.episode(seed).map(Episode).map_err(errors::world)
+    }
+
+    /// The episode with this seed, flown by a log of (n, d) actions without looking: (episode, sum of rewards,
+    /// actions flown, (length of the trail, world) of each map).
+    fn replay(
+        &self,
+        py: Python<'_>,
+        seed: u64,
+        actions: PyReadonlyArray2<'_, f32>,
+    ) -> PyResult<(Episode, f64, usize, Vec<(usize, World)>)> {
+        let (episode, actions) = (self.episode(seed)?.0, actions.as_slice()?);
+        let replay = py.detach(|| auv_env::Replay::fly(episode, actions)).map_err(errors::env)?;
+        let maps = replay.maps.into_iter().map(|(length, world)| (length, World(world))).collect();
+        Ok((Episode(replay.episode), replay.reward, replay.flown, maps))
     }
 }
 
@@ -190,6 +204,28 @@ impl Episode {
     #[getter]
     fn straight_distance_m(&self) -> f64 {
         self.0.limits().distance_m
+    }
+
+    /// Time of the straight line in still water, s.
+    #[getter]
+    fn still_water_time_s(&self) -> f64 {
+        self.0.limits().distance_m / self.0.world().scenario().vehicle.speed_mps
+    }
+
+    /// LFHH cost of the path flown so far, through the maps that the vehicle met: (length of the trail, world)
+    /// of each. None if nothing was flown.
+    fn flown_cost(&self, maps: Vec<(usize, PyRef<'_, World>)>) -> PyResult<Option<f64>> {
+        let trail = &self.0.state().trail;
+        let ends = maps.iter().skip(1).map(|(length, _)| *length).chain([trail.len()]);
+        let pieces: Vec<_> = maps
+            .iter()
+            .zip(ends)
+            .map(|((begin, world), end)| {
+                let begin = begin.saturating_sub(1).min(trail.len());
+                (&world.0, &trail[begin..end.clamp(begin, trail.len())])
+            })
+            .collect();
+        auv_planners::cost::flown_cost(&pieces).map_err(errors::planning)
     }
 
     #[getter]
