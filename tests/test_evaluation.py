@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import sqlite3
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -268,10 +267,3 @@ def test_the_ranking_counts_failures(flown: list[EpisodeResult]) -> None:
 )
 def test_wilson(solved: int, episodes: int, low: float, high: float) -> None:
     assert wilson_interval(solved, episodes) == pytest.approx((low, high), abs=5e-5)
-
-
-def test_resampling_keeps_ends_and_length() -> None:
-    path: Any = np.column_stack([np.zeros(101), np.linspace(0.0, 10_000.0, 101), np.zeros(101)])
-    resampled = evaluation.flight.resample(path, 1000.0)
-    assert resampled.shape == (11, 3)
-    assert np.allclose(np.diff(resampled[:, 1]), 1000.0)

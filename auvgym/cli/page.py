@@ -94,7 +94,7 @@ def episode_figure(replayed: Replay, row: EpisodeResult) -> Any:
 
     core: Any = replayed.flight.env.unwrapped
     return report.episode_figure(
-        [world for _, world in replayed.flight.maps],
+        replayed.flight.worlds,
         np.asarray(core.episode.trail, dtype=np.float64),
         title=f"{row.policy} · {row.environment}",
         subtitle=f"seed {row.seed}: {row.outcome} after {row.time_s / 3600:.2f} h",

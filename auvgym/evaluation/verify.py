@@ -18,7 +18,7 @@ from typing import Any
 
 import auvgym
 from auvgym.evaluation.oceans import PREFIX
-from auvgym.evaluation.replay import replay
+from auvgym.evaluation.replay import replay_differences
 from auvgym.evaluation.result import EpisodeResult, PolicySpec
 from auvgym.evaluation.store import Store
 from auvgym.evaluation.suite import Instance, Suite
@@ -102,8 +102,7 @@ def check_row(check: tuple[EpisodeResult, bool]) -> list[str]:
             return _flown_again(row)
         if not _present(row):
             return [f"scenario: {row.scenario!r} is neither shipped nor a file here"]
-        env = environment(replace(row.instance, seed=0))
-        return replay(row, env=env).differences
+        return replay_differences(row, environment(replace(row.instance, seed=0)))
     except (ValueError, OSError, ImportError) as error:
         return [f"cannot be flown: {error}"]
 
