@@ -115,7 +115,7 @@ def test_an_interrupt_keeps_what_has_ended(
     with Store(path) as store, pytest.raises(KeyboardInterrupt):
         run(SUITE, SPECS, store, workers, on_episode=stop)
     with Store(path) as store:
-        assert len(store.finished(SUITE)) == 3
+        assert 3 <= len(store.finished(SUITE)) < len(flown)
         assert comparable(run(SUITE, SPECS, store)) == comparable(flown)
 
 

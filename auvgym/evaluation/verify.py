@@ -31,6 +31,7 @@ from auvgym.policies.registry import is_shipped
 OnRow = Callable[[int, int], None]
 # Wall clock, and what a policy outside this version may count differently.
 _NEVER_COMPARED = ("planning_seconds", "suite", "suite_hash")
+_HANDFUL = 32  # rows to a message between processes, which takes longer than one row
 
 
 @dataclass(frozen=True)
@@ -114,9 +115,16 @@ def _checked(
         for check in checks:
             yield check, check_row(check)
         return
-    with closing(run_tasks(check_row, checks, workers)) as results:
-        for check, found in results:
-            yield check, [str(found)] if isinstance(found, ProcessDiedError) else found
+    handfuls = [checks[first : first + _HANDFUL] for first in range(0, len(checks), _HANDFUL)]
+    with closing(run_tasks(_check_rows, handfuls, workers)) as results:
+        for handful, found in results:
+            if isinstance(found, ProcessDiedError):
+                found = [[str(found)]] * len(handful)
+            yield from zip(handful, found, strict=True)
+
+
+def _check_rows(checks: Sequence[tuple[EpisodeResult, bool]]) -> list[list[str]]:
+    return [check_row(check) for check in checks]
 
 
 def _flown_again(row: EpisodeResult) -> list[str]:
