@@ -76,6 +76,21 @@ def test_the_number_of_workers_changes_nothing(flown: list[EpisodeResult]) -> No
         assert comparable(run(SUITE, SPECS, store, workers=2)) == comparable(flown)
 
 
+def test_what_is_reported_is_stored(tmp_path: Path, flown: list[EpisodeResult]) -> None:
+    """Cheap episodes are written together, and none counts before it is written."""
+    counted: list[int] = []
+    path = tmp_path / "results.db"
+
+    def look(result: EpisodeResult, done: int, total: int) -> None:
+        with Store(path, read_only=True) as other:
+            assert result in other.results()
+        counted.append(done)
+
+    with Store(path) as store:
+        run(SUITE, SPECS, store, on_episode=look)
+    assert counted == list(range(1, len(flown) + 1))
+
+
 def test_figures_make_sense(flown: list[EpisodeResult]) -> None:
     assert len(flown) == len(SUITE.instances) * len(SPECS)
     for result in flown:

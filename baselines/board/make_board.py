@@ -120,7 +120,8 @@ def with_short_table(readme: str, name: str, definition: dict[str, Any]) -> str:
     before, rest = readme.split(BEGIN)
     _, after = rest.split(END)
     boards = board(read_parquet(kept(name)), definition["reference"])
-    return f"{before}{BEGIN}\n{short_table(boards, definition['reference'])}{END}{after}"
+    table = short_table(boards, definition["reference"])
+    return f"{before}{BEGIN}\n\n{table}\n{END}{after}"
 
 
 def short_table(boards: dict[Stratum, list[BoardRow]], reference: str) -> str:
