@@ -189,11 +189,14 @@ class _Problem:
 @lru_cache(maxsize=64)
 def _least(problem: _Problem) -> float:
     """What the reference costs, or infinity: the same for every plan of a problem."""
-    one, ends = problem, {"start": problem.start, "goal": problem.goal}
-    if one.cost == "length":
-        best = plan(one.world, "visibility", **ends, zones=one.options)
+    world, start, goal = problem.world, problem.start, problem.goal
+    if problem.cost == "length":
+        best = plan(world, "visibility", start=start, goal=goal, zones=problem.options)
         return _length_m(best.waypoints) if best.feasible else np.inf
-    best = plan(one.world, "section-optimum", **ends, cost=one.cost, cost_options=one.options)
+    best = plan(
+        world, "section-optimum", start=start, goal=goal,
+        cost=problem.cost, cost_options=problem.options,
+    )  # fmt: skip
     return best.cost["total"]
 
 
