@@ -120,8 +120,13 @@ def with_short_table(readme: str, name: str, definition: dict[str, Any]) -> str:
     before, rest = readme.split(BEGIN)
     _, after = rest.split(END)
     boards = board(read_parquet(kept(name)), definition["reference"])
+    sentence = (
+        f"The best {LEADING} of each environment and `{definition['reference']}` on "
+        f"[board `{name}`](baselines/board/{name}.md): mean score (T_ref / T if they arrive, else "
+        "0), and how many they solve."
+    )
     table = short_table(boards, definition["reference"])
-    return f"{before}{BEGIN}\n\n{table}\n{END}{after}"
+    return f"{before}{BEGIN}\n\n{sentence}\n\n{table}\n{END}{after}"
 
 
 def short_table(boards: dict[Stratum, list[BoardRow]], reference: str) -> str:

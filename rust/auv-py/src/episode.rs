@@ -26,6 +26,9 @@ pub fn sonar_directions(py: Python<'_>, dimensions: u8) -> PyResult<Bound<'_, Py
     points::table(py, &auv_env::sonar::beams(dimensions))
 }
 
+/// (episode, sum of rewards, actions flown, (length of the trail, world) of each map).
+type Replayed = (Episode, f64, usize, Vec<(usize, World)>);
+
 /// Makes episodes from seeds.
 #[pyclass(frozen, module = "auvgym._core")]
 pub struct Source(pub auv_env::Source);
@@ -49,14 +52,8 @@ impl Source {
         self.0.episode(seed).map(Episode).map_err(errors::world)
     }
 
-    /// The episode with this seed, flown by a log of (n, d) actions without looking: (episode, sum of rewards,
-    /// actions flown, (length of the trail, world) of each map).
-    fn replay(
-        &self,
-        py: Python<'_>,
-        seed: u64,
-        actions: PyReadonlyArray2<'_, f32>,
-    ) -> PyResult<(Episode, f64, usize, Vec<(usize, World)>)> {
+    /// The episode with this seed, flown by a log of (n, d) actions without looking.
+    fn replay(&self, py: Python<'_>, seed: u64, actions: PyReadonlyArray2<'_, f32>) -> PyResult<Replayed> {
         let (episode, actions) = (self.episode(seed)?.0, actions.as_slice()?);
         let replay = py.detach(|| auv_env::Replay::fly(episode, actions)).map_err(errors::env)?;
         let maps = replay.maps.into_iter().map(|(length, world)| (length, World(world))).collect();
