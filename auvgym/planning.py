@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 from numbers import Integral
 from typing import Any
 
@@ -162,13 +163,41 @@ def gap(world: World, path: Plan | npt.ArrayLike, cost: str | None = None, **opt
     if cost is None:
         cost = "length" if is_harbor(world) else "lfhh"
     if cost == "length":
-        best = plan(world, "visibility", start=start, goal=goal, zones=options)
-        return _length_m(waypoints) - _length_m(best.waypoints) if best.feasible else np.inf
-    total = path_cost(world, waypoints, cost, **options)["total"]
-    reference = plan(
-        world, "section-optimum", start=start, goal=goal, cost=cost, cost_options=options
-    )
-    return total - reference.cost["total"]
+        total = _length_m(waypoints)
+    else:
+        total = path_cost(world, waypoints, cost, **options)["total"]
+    key = (
+        world.scenario.hash, world.seed, world.mission, world.time_s, repr(world._core.changes),
+        start.tobytes(), goal.tobytes(), cost, _parameters(options),
+    )  # fmt: skip
+    least = _least(_Problem(key, world, start, goal, cost, options))
+    return total - least if least < np.inf else np.inf
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """What a reference is asked for; equal if the key is."""
+
+    key: tuple[Any, ...]
+    world: World = field(compare=False)
+    start: Array = field(compare=False)
+    goal: Array = field(compare=False)
+    cost: str = field(compare=False)
+    options: dict[str, Any] = field(compare=False)
+
+
+@lru_cache(maxsize=64)
+def _least(problem: _Problem) -> float:
+    """What the reference costs, or infinity: the same for every plan of a problem."""
+    world, start, goal = problem.world, problem.start, problem.goal
+    if problem.cost == "length":
+        best = plan(world, "visibility", start=start, goal=goal, zones=problem.options)
+        return _length_m(best.waypoints) if best.feasible else np.inf
+    best = plan(
+        world, "section-optimum", start=start, goal=goal,
+        cost=problem.cost, cost_options=problem.options,
+    )  # fmt: skip
+    return best.cost["total"]
 
 
 def is_harbor(world: World) -> bool:

@@ -7,12 +7,14 @@ import time
 from pathlib import Path
 from typing import Any
 
+import gymnasium
 import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from board_rows import row
 
+from auvgym import policies
 from auvgym.evaluation import EpisodeResult, PolicySpec, Store, load_suite, run, verify
 from auvgym.evaluation.board import board, columns_of
 from auvgym.evaluation.statistics import score_tables
@@ -51,7 +53,39 @@ def test_a_row_on_the_disk(benchmark: Any, tmp_path: Path) -> None:
         benchmark(lambda: store.add(row(seed=next(numbers))))
 
 
-@pytest.mark.parametrize("policy", ["sonar-rule", "lfhh"])
+@pytest.mark.parametrize("policy", ["straight", "sonar-rule", "astar-replan", "lfhh"])
+def test_running_against_flying(policy: str, benchmark: Any, tmp_path: Path) -> None:
+    """extra_info: what measuring and keeping episodes takes beside flying them, a part of it."""
+    suite = load_suite("demo")
+    envs = {one.environment: gymnasium.make(one.environment) for one in suite.instances}
+    numbers = iter(range(10**9))
+
+    def fly() -> float:
+        pilot = policies.make(policy)
+        begin = time.process_time()
+        for instance in suite.instances:
+            env = envs[instance.environment]
+            observation, info = env.reset(seed=instance.seed)
+            policies.begin(pilot, env, observation, info)
+            ended = False
+            while not ended:
+                observation, _, ended, _, info = env.step(pilot.act(observation, info))
+        return time.process_time() - begin
+
+    def run_it() -> float:
+        begin = time.process_time()
+        with Store(tmp_path / f"{next(numbers)}.db") as store:
+            run(suite, [PolicySpec(policy)], store)
+        return time.process_time() - begin
+
+    run_it()
+    flying = min(fly() for _ in range(3))
+    running = benchmark.pedantic(lambda: min(run_it() for _ in range(3)), rounds=1)
+    benchmark.extra_info["overhead"] = running / flying - 1.0
+    benchmark.extra_info["overhead_ms_an_episode"] = 1e3 * (running - flying) / len(suite.instances)
+
+
+@pytest.mark.parametrize("policy", ["straight", "sonar-rule", "lfhh"])
 def test_verifying_against_flying(policy: str, benchmark: Any, tmp_path: Path) -> None:
     """extra_info: the run's seconds over the verification's."""
     path = tmp_path / "results.db"

@@ -9,6 +9,7 @@ from types import ModuleType
 
 import pytest
 
+import auvgym
 from auvgym import evaluation
 from auvgym.evaluation.export import read_parquet
 
@@ -54,8 +55,29 @@ def test_the_results_are_of_the_suite_as_it_is(name: str) -> None:
 
 def test_every_board_is_of_a_shipped_suite(make_board: ModuleType) -> None:
     for name, definition in make_board.definitions().items():
-        assert name in evaluation.list_suites()
-        assert definition["policies"] in ("suite", "all")
+        suite = evaluation.load_suite(name)
+        environments = {instance.environment for instance in suite.instances}
+        entered = make_board.entries(suite, definition)
+        assert definition["reference"] in {spec.name for spec, _ in entered}
+        assert len({spec.name for spec, _ in entered}) == len(entered)
+        for spec, flown in entered:
+            assert flown <= environments
+            auvgym.policies.make(spec.name, **spec.parameters)
+
+
+def test_every_policy_is_on_the_board_of_the_papers(make_board: ModuleType) -> None:
+    suite = evaluation.load_suite("paper")
+    entered = make_board.entries(suite, make_board.definitions()["paper"])
+    assert {spec.name for spec, _ in entered} >= set(auvgym.list_policies())
+
+
+def test_the_readme_s_table_is_what_the_results_give(make_board: ModuleType) -> None:
+    (name,) = [name for name, one in make_board.definitions().items() if one.get("readme")]
+    readme = make_board.README.read_text(encoding="utf-8")
+    definition = make_board.definitions()[name]
+    assert make_board.with_short_table(readme, name, definition) == readme
+    table = readme.partition(make_board.BEGIN)[2].partition(make_board.END)[0]
+    assert table.count("\n") > 5
 
 
 def test_the_documents_policy_flies(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 import shutil
 import subprocess
@@ -13,8 +14,10 @@ from board_rows import row
 from typer.testing import CliRunner
 
 from auvgym.cli import app
-from auvgym.evaluation import EpisodeResult, Instance, PolicySpec, Store, Suite, run
+from auvgym.cli.page import episode_figure as drawn
+from auvgym.evaluation import EpisodeResult, Instance, PolicySpec, Store, Suite, replay, run
 from auvgym.evaluation.board import board
+from auvgym.evaluation.plans import plans_of
 from auvgym.evaluation.statistics import OVERALL
 from auvgym.report.charts import pareto_front
 from auvgym.report.text_tables import latex, markdown
@@ -97,24 +100,76 @@ def test_the_folder_asks_for_nothing_outside_it(folder: Path) -> None:
     assert (folder / "board.md").read_text().count("###") == 3
 
 
-@pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed (apt install chromium)")
-def test_the_page_works_in_a_browser(folder: Path, tmp_path: Path) -> None:
-    """Opened from disk at an episode: charts are drawn, and the episode with its slider."""
-    assert CHROMIUM is not None
+def opened(url: str, profile: Path) -> str:
+    """The page as it stands once a headless browser has run its scripts, none of which failed."""
+    if CHROMIUM is None:
+        pytest.skip("chromium is not installed (apt install chromium)")
     done = subprocess.run(
         [
             CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader",
-            f"--user-data-dir={tmp_path}", "--window-size=1400,3000", "--enable-logging=stderr",
-            "--virtual-time-budget=15000", "--dump-dom",
-            f"{(folder / 'index.html').as_uri()}#episode-0",
+            f"--user-data-dir={profile}", "--window-size=1400,3000", "--enable-logging=stderr",
+            "--virtual-time-budget=15000", "--dump-dom", url,
         ],
         capture_output=True, text=True, timeout=120, check=True,
     )  # fmt: skip
-    dom = done.stdout
+    assert not re.search(r"CONSOLE.*(Uncaught|Error)", done.stderr), done.stderr
+    return done.stdout
+
+
+def test_the_page_works_in_a_browser(folder: Path, tmp_path: Path) -> None:
+    """Opened from disk at an episode: charts are drawn, and the episode with its slider."""
+    dom = opened(f"{(folder / 'index.html').as_uri()}#episode-0", tmp_path)
     assert 'data-shown="0"' in dom
     assert "slider-group" in dom
     assert dom.count('class="main-svg"') >= 4
-    assert not re.search(r"CONSOLE.*(Uncaught|Error)", done.stderr), done.stderr
+
+
+def test_a_click_on_a_heading_sorts_by_it(folder: Path, tmp_path: Path) -> None:
+    """Clicked by a script that is put into the page: once, twice, and on a column of texts."""
+    script = """<script>
+    const table = document.querySelector("table.ranked");
+    const found = [];
+    for (const name of ["score", "score", "policy"]) {
+      const heading = [...table.tHead.rows[0].cells].find((one) => one.textContent === name);
+      heading.querySelector("button").click();
+      found.push([heading.getAttribute("aria-sort"),
+        ...[...table.tBodies[0].rows].map((row) => row.cells[1].textContent)].join(" "));
+    }
+    document.body.dataset.found = found.join("; ");
+    </script></body>"""
+    page = (folder / "index.html").read_text()
+    clicked = folder / "clicked.html"
+    clicked.write_text(page.replace("</body>", script))
+    found = re.search(r'data-found="([^"]*)"', opened(clicked.as_uri(), tmp_path))
+    clicked.unlink()
+    assert found is not None
+    assert found[1].split("; ") == [
+        "descending sonar-rule straight",
+        "ascending straight sonar-rule",
+        "ascending sonar-rule straight",
+    ]
+
+
+def test_an_episode_shows_each_plan_from_its_time_on() -> None:
+    """Found by another flight of the policy, which flies as its log says, and by no other."""
+    suite = Suite("mine", (Instance("AUVDynamic2D-v0", 4),))
+    with Store(None) as store:
+        (flown,) = run(suite, [PolicySpec("astar")], store)
+    plans = plans_of(flown)
+    assert len(plans) == 1 + flown.replans
+    times = [moment_s for moment_s, _ in plans]
+    assert times == sorted(times)
+    assert times[0] == 0.0
+    assert plans_of(flown, longest_s=0.0) == []
+    assert plans_of(dataclasses.replace(flown, policy="rrt-star")) == []
+    figure = drawn(replay(flown), flown)
+    ways = [index for index, trace in enumerate(figure.data) if trace.name == "plan"]
+    assert len(ways) == len(plans)
+    for frame in (figure.frames[0], figure.frames[30], figure.frames[-1]):
+        shown = [frame.data[frame.traces.index(index)].visible for index in ways]
+        assert sum(shown) == 1
+    first = figure.frames[0]
+    assert first.data[first.traces.index(ways[0])].visible
 
 
 def test_what_cannot_be_reported_says_why(folder: Path, tmp_path: Path) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import sqlite3
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -77,6 +76,21 @@ def test_the_number_of_workers_changes_nothing(flown: list[EpisodeResult]) -> No
         assert comparable(run(SUITE, SPECS, store, workers=2)) == comparable(flown)
 
 
+def test_what_is_reported_is_stored(tmp_path: Path, flown: list[EpisodeResult]) -> None:
+    """Cheap episodes are written together, and none counts before it is written."""
+    counted: list[int] = []
+    path = tmp_path / "results.db"
+
+    def look(result: EpisodeResult, done: int, total: int) -> None:
+        with Store(path, read_only=True) as other:
+            assert result in other.results()
+        counted.append(done)
+
+    with Store(path) as store:
+        run(SUITE, SPECS, store, on_episode=look)
+    assert counted == list(range(1, len(flown) + 1))
+
+
 def test_figures_make_sense(flown: list[EpisodeResult]) -> None:
     assert len(flown) == len(SUITE.instances) * len(SPECS)
     for result in flown:
@@ -116,7 +130,7 @@ def test_an_interrupt_keeps_what_has_ended(
     with Store(path) as store, pytest.raises(KeyboardInterrupt):
         run(SUITE, SPECS, store, workers, on_episode=stop)
     with Store(path) as store:
-        assert len(store.finished(SUITE)) == 3
+        assert 3 <= len(store.finished(SUITE)) < len(flown)
         assert comparable(run(SUITE, SPECS, store)) == comparable(flown)
 
 
@@ -268,10 +282,3 @@ def test_the_ranking_counts_failures(flown: list[EpisodeResult]) -> None:
 )
 def test_wilson(solved: int, episodes: int, low: float, high: float) -> None:
     assert wilson_interval(solved, episodes) == pytest.approx((low, high), abs=5e-5)
-
-
-def test_resampling_keeps_ends_and_length() -> None:
-    path: Any = np.column_stack([np.zeros(101), np.linspace(0.0, 10_000.0, 101), np.zeros(101)])
-    resampled = evaluation.flight.resample(path, 1000.0)
-    assert resampled.shape == (11, 3)
-    assert np.allclose(np.diff(resampled[:, 1]), 1000.0)

@@ -7,6 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 import auvgym
+from auvgym import planning
 from auvgym.cli import app
 from auvgym.evaluation import Instance, PolicySpec, Store, Suite, run, summarise
 
@@ -25,6 +26,27 @@ def test_no_population_beats_the_reference(name: str, cost: str, planner: str) -
     assert gap == plan.cost["total"] - best.cost["total"]
     assert gap > 0.0
     assert auvgym.gap(world, best.waypoints, cost) == 0.0
+
+
+def test_the_reference_is_that_of_the_world_as_it_is() -> None:
+    """It is worked out once for a problem, and anew for another: map, time, ends, cost, options."""
+    world = auvgym.World("lfhh-2d-1")
+    line = np.linspace(world.start, world.goal, 40)
+
+    def problems() -> list[float]:
+        return [
+            auvgym.gap(world, line),
+            auvgym.gap(world, line[2:]),
+            auvgym.gap(world, line, "time"),
+            auvgym.gap(world, line, "time", margin_m=200.0),
+        ]
+
+    before = problems()
+    assert world.apply_change(world.start)
+    after = problems()
+    assert len({*before, *after}) == 8
+    planning._least.cache_clear()
+    assert problems() == after
 
 
 def test_a_straight_line_in_still_water_has_no_gap() -> None:

@@ -91,11 +91,13 @@ def episode_figure(replayed: Replay, row: EpisodeResult) -> Any:
     import numpy as np
 
     from auvgym import report
+    from auvgym.evaluation.plans import plans_of
 
     core: Any = replayed.flight.env.unwrapped
     return report.episode_figure(
-        [world for _, world in replayed.flight.maps],
+        replayed.flight.worlds,
         np.asarray(core.episode.trail, dtype=np.float64),
+        plans=plans_of(row),
         title=f"{row.policy} · {row.environment}",
         subtitle=f"seed {row.seed}: {row.outcome} after {row.time_s / 3600:.2f} h",
     )

@@ -261,6 +261,26 @@ class AUVEnv(gymnasium.Env[Observation, Choice]):
             self.render()
         return observation, reward, terminated, False, episode.info()
 
+    def replay(
+        self, seed: int, actions: npt.NDArray[np.float32]
+    ) -> tuple[_core.Episode, float, int, list[tuple[int, _core.World]]]:
+        """Fly a log in one call, as ``reset(seed=seed)`` and then ``step`` would, but unobserved.
+
+        Args:
+            seed: as of ``reset``.
+            actions: (n, d) float32.
+
+        Returns:
+            The episode as it then stands, the sum of rewards, how many actions were flown before
+            its end, and (length of the trail when it came, world) of each map that was met.
+
+        Raises:
+            ActionError: an action that is not allowed.
+        """
+        generator, _ = gymnasium.utils.seeding.np_random(seed)
+        log = np.ascontiguousarray(actions, dtype=np.float32)
+        return self._source.replay(int(generator.integers(0, 2**63)), log)
+
     def render(self) -> npt.NDArray[np.uint8] | None:
         """A frame, (height, width, 3) uint8, or None when it went to the screen."""
         if self.render_mode is None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import replace
@@ -61,7 +62,8 @@ def board(
 def policy_label(summary: PolicySummary) -> str:
     """Name, and seed and parameters where they are not the usual ones."""
     seed = f" seed {summary.policy_seed}" if summary.policy_seed else ""
-    parameters = "" if summary.parameters == "{}" else f" {summary.parameters}"
+    given = json.loads(summary.parameters)
+    parameters = "".join(f" {name} {json.dumps(value)}" for name, value in given.items())
     return f"{summary.policy}{parameters}{seed}"
 
 

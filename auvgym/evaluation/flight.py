@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import auvgym
+from auvgym import _core
 from auvgym._names import unknown
 from auvgym.evaluation.oceans import PREFIX, ocean_scenario
 from auvgym.evaluation.suite import Instance, SuiteError
@@ -76,7 +77,17 @@ class Flight:
     info: dict[str, Any] = field(default_factory=dict)
     reward: float = 0.0
     actions: list[NDArray[np.float32]] = field(default_factory=list)
-    maps: list[tuple[int, Any]] = field(default_factory=list)
+    maps: list[tuple[int, _core.World]] = field(default_factory=list)
+
+    def measures(self) -> dict[str, Any]:
+        """:func:`measures` of the episode as it stands."""
+        core: Any = self.env.unwrapped
+        return measures(core.episode, self.maps, len(self.actions), self.reward)
+
+    @property
+    def worlds(self) -> list[auvgym.World]:
+        """The maps, as the rest of auvgym takes them."""
+        return [auvgym.World._of(world) for _, world in self.maps]
 
 
 def fly(flight: Flight, seed: int, start: Start, choose: Choose) -> None:
@@ -87,7 +98,7 @@ def fly(flight: Flight, seed: int, start: Start, choose: Choose) -> None:
     env = flight.env
     core: Any = env.unwrapped
     observation, flight.info = env.reset(seed=seed)
-    flight.maps.append((0, core.world))
+    flight.maps.append((0, core.episode.world))
     start(observation, flight.info)
     ended = False
     while not ended:
@@ -98,21 +109,28 @@ def fly(flight: Flight, seed: int, start: Start, choose: Choose) -> None:
         flight.reward += float(reward)
         ended = bool(terminated or truncated)
         if flight.info["map_changes"] != before:
-            flight.maps.append((len(core.episode.trail), core.world))
+            flight.maps.append((len(core.episode.trail), core.episode.world))
 
 
-def measures(flight: Flight) -> dict[str, Any]:
-    """Every figure of an :class:`~auvgym.evaluation.result.EpisodeResult` the engine decides."""
-    core: Any = flight.env.unwrapped
-    info = flight.info
-    world = core.world
-    distance_m = float(np.linalg.norm(np.asarray(world.goal) - np.asarray(world.start)))
-    reference_s = distance_m / float(world.scenario.to_dict()["vehicle"]["speed_mps"])
+def measures(
+    episode: _core.Episode, maps: Sequence[tuple[int, _core.World]], steps: int, reward: float
+) -> dict[str, Any]:
+    """Every figure of an :class:`~auvgym.evaluation.result.EpisodeResult` the engine decides.
+
+    Args:
+        episode: as it stands after its last step.
+        maps: (trail length when it came, world) for each map the vehicle has met.
+        steps: environment steps flown.
+        reward: the sum of rewards.
+    """
+    info = episode.info()
+    reference_s = episode.still_water_time_s
     success = bool(info["is_success"])
     time_s = float(info["time_s"])
     slowness = min(max(time_s / reference_s, 1.0), SLOWEST_COUNTED)
+    cost = episode.flown_cost(list(maps))
     return {
-        "scenario_hash": str(world.scenario.hash),
+        "scenario_hash": maps[0][1].scenario.hash,
         "outcome": str(info["outcome"]),
         "success": int(success),
         "score": 1.0 / slowness if success else 0.0,
@@ -121,53 +139,12 @@ def measures(flight: Flight) -> dict[str, Any]:
         "path_length_m": float(info["path_length_m"]),
         "min_clearance_m": _finite(info["min_clearance_m"]),
         "distance_to_goal_m": float(info["distance_to_goal_m"]),
-        "cost": cost(flight),
-        "time_limit_s": float(core.episode.time_limit_s),
+        "cost": None if cost is None else _finite(cost),
+        "time_limit_s": episode.time_limit_s,
         "still_water_time_s": reference_s,
-        "steps": len(flight.actions),
-        "reward": flight.reward,
+        "steps": steps,
+        "reward": reward,
     }
-
-
-def cost(flight: Flight) -> float | None:
-    """The LFHH paper's cost (eq. 6-10) of the flown path; None if nothing was flown.
-
-    The path is cut where the map changed, each piece is resampled to the section spacing and
-    costed in the map it was flown in, and the pieces are averaged by their length.
-    """
-    core: Any = flight.env.unwrapped
-    trail = np.asarray(core.episode.trail, dtype=np.float64)
-    if len(trail) < 2:
-        return None
-    spacing_m = _section_spacing_m(flight.maps[0][1])
-    ends = [length for length, _ in flight.maps[1:]] + [len(trail)]
-    total, weight = 0.0, 0.0
-    for (begin, world), end in zip(flight.maps, ends, strict=True):
-        piece = trail[max(begin - 1, 0) : end]
-        length_m = float(np.linalg.norm(np.diff(piece, axis=0), axis=1).sum())
-        if length_m < 1.0:
-            continue
-        total += length_m * auvgym.path_cost(world, resample(piece, spacing_m))["total"]
-        weight += length_m
-    return _finite(total / weight) if weight > 0.0 else None
-
-
-def resample(path_m: NDArray[np.float64], spacing_m: float) -> NDArray[np.float64]:
-    """``path_m`` (n, 3) cut anew into equal steps of about ``spacing_m`` along its length."""
-    steps_m = np.linalg.norm(np.diff(path_m, axis=0), axis=1)
-    along_m = np.concatenate([[0.0], np.cumsum(steps_m)])
-    pieces = max(1, round(float(along_m[-1]) / spacing_m))
-    targets_m = np.linspace(0.0, along_m[-1], pieces + 1)
-    return np.column_stack([np.interp(targets_m, along_m, path_m[:, axis]) for axis in range(3)])
-
-
-def _section_spacing_m(world: Any) -> float:
-    """The section planners' step: the scenario's spacing, else 39 steps from start to goal."""
-    sections = world.scenario.to_dict().get("sections") or {}
-    if sections.get("spacing_m"):
-        return float(sections["spacing_m"])
-    distance_m = float(np.linalg.norm(np.asarray(world.goal) - np.asarray(world.start)))
-    return distance_m / (int(sections.get("count", 40)) - 1)
 
 
 def _finite(value: float) -> float | None:

@@ -5,16 +5,18 @@ from __future__ import annotations
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
+from auvgym.envs import AUVEnv
 from auvgym.evaluation.flight import Flight, fly, make_environment, measures
 from auvgym.evaluation.result import EpisodeResult
 
 OnStep = Callable[[gymnasium.Env[Any, Any], dict[str, Any]], None]
+_UNFINISHED = "actions: the log ends after {}, the episode does not"
 _AFTER_AN_ERROR = ("outcome", "success", "score")
 
 
@@ -46,10 +48,7 @@ def replay(
         ReplayError: the action log is damaged.
     """
     flight = Flight(env if env is not None else make_environment(stored.instance))
-    try:
-        actions = stored.action_log()
-    except (zlib.error, ValueError) as error:
-        raise ReplayError(f"the action log is damaged ({error})") from error
+    actions = action_log(stored)
     log = iter(actions)
 
     def choose(observation: NDArray[np.float32], info: dict[str, Any]) -> NDArray[np.float32]:
@@ -63,16 +62,48 @@ def replay(
     except StopIteration:
         # A policy that failed left its episode in the air; any other log ends with its episode.
         if not stored.policy_failed:
-            differences.append(f"actions: the log ends after {len(actions)}, the episode does not")
+            differences.append(_UNFINISHED.format(len(actions)))
     else:
         if on_step is not None:
             on_step(flight.env, flight.info)
-    left = len(actions) - len(flight.actions)
-    if left:
-        differences.append(f"actions: the episode ends {left} before the log does")
-    for name, value in measures(flight).items():
-        if stored.policy_failed and name in _AFTER_AN_ERROR:
-            continue
-        if value != getattr(stored, name):
-            differences.append(f"{name}: stored {getattr(stored, name)!r}, replayed {value!r}")
+    differences += _differences(stored, len(actions), len(flight.actions), flight.measures())
     return Replay(flight, differences)
+
+
+def replay_differences(stored: EpisodeResult, env: gymnasium.Env[Any, Any]) -> list[str]:
+    """What :func:`replay` finds different, from one call of the engine: nothing looks meanwhile.
+
+    Raises:
+        ReplayError: the action log is damaged.
+    """
+    actions, core = action_log(stored), cast(AUVEnv, env.unwrapped)
+    episode, reward, flown, maps = core.replay(stored.seed, actions)
+    differences: list[str] = []
+    if episode.outcome == "running" and not stored.policy_failed:
+        differences.append(_UNFINISHED.format(len(actions)))
+    return differences + _differences(
+        stored, len(actions), flown, measures(episode, maps, flown, reward)
+    )
+
+
+def action_log(stored: EpisodeResult) -> NDArray[np.float32]:
+    """The row's actions, (steps, d) float32.
+
+    Raises:
+        ReplayError: the action log is damaged.
+    """
+    try:
+        return stored.action_log()
+    except (zlib.error, ValueError) as error:
+        raise ReplayError(f"the action log is damaged ({error})") from error
+
+
+def _differences(
+    stored: EpisodeResult, logged: int, flown: int, measured: dict[str, Any]
+) -> list[str]:
+    found = [f"actions: the episode ends {logged - flown} before the log does"]
+    return (found if logged > flown else []) + [
+        f"{name}: stored {getattr(stored, name)!r}, replayed {value!r}"
+        for name, value in measured.items()
+        if value != getattr(stored, name) and not (stored.policy_failed and name in _AFTER_AN_ERROR)
+    ]

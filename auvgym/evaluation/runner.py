@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import replace
@@ -23,6 +25,9 @@ OnEpisode = Callable[[EpisodeResult, int, int], None]
 Flies = Callable[[PolicySpec, Instance], bool]
 Engine = Literal["processes", "ray"]
 STEP_LIMIT_S = 120.0
+# Waiting for the disk costs more than a cheap episode. What ends so soon after the last write that
+# a kill takes no more flying with it than this, is written with the next.
+WRITE_EVERY_S = 0.05
 
 
 def run(
@@ -98,14 +103,30 @@ def run(
     tasks = [task for name, task in pairs.items() if name not in finished]
     done = len(pairs) - len(tasks)
     # closing: an interrupt that arrives here, outside the iteration, must end its processes too.
-    with closing(_results(tasks, workers, engine)) as results:
-        for result in results:
-            if isinstance(result, SuiteError):
-                raise result
-            store.add(result)
+    ended: list[EpisodeResult] = []
+
+    def keep() -> None:
+        nonlocal done
+        store.add(*ended)
+        stored = ended.copy()
+        ended.clear()
+        for result in stored:
             done += 1
             if on_episode is not None:
                 on_episode(result, done, len(pairs))
+
+    try:
+        with closing(_results(tasks, workers, engine)) as results:
+            kept_s = -math.inf
+            for result in results:
+                if isinstance(result, SuiteError):
+                    raise result
+                ended.append(result)
+                if time.monotonic() >= kept_s + WRITE_EVERY_S:
+                    keep()
+                    kept_s = time.monotonic()
+    finally:
+        keep()
     return [result for result in store.results(suite) if result_key(result) in pairs]
 
 

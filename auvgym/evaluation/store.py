@@ -99,14 +99,14 @@ class Store:
             )
             return set(rows)
 
-    def add(self, result: EpisodeResult) -> None:
-        """Write one episode and commit; one that is there already stays as it is."""
+    def add(self, *results: EpisodeResult) -> None:
+        """Write episodes, all or none, and commit; one that is there already stays as it is."""
         marks = ", ".join("?" * (len(fields(EpisodeResult)) + 1))
         names = ", ".join([*_columns(), "checksum"])
         with self._explained(), self._database:
-            self._database.execute(
+            self._database.executemany(
                 f"INSERT OR IGNORE INTO episodes ({names}) VALUES ({marks})",
-                (*result.values, result.checksum),
+                [(*result.values, result.checksum) for result in results],
             )
 
     def results(self, suite: Suite | None = None) -> list[EpisodeResult]:

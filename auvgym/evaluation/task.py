@@ -13,7 +13,7 @@ import gymnasium
 
 import auvgym
 from auvgym import policies
-from auvgym.evaluation.flight import Flight, fly, make_environment, measures
+from auvgym.evaluation.flight import Flight, fly, make_environment
 from auvgym.evaluation.result import EpisodeResult, PolicySpec, pack_actions
 from auvgym.evaluation.suite import Instance, SuiteError
 from auvgym.evaluation.workers import ProcessDiedError
@@ -109,8 +109,8 @@ def _result(
 ) -> EpisodeResult | SuiteError:
     if not flight.maps:
         _, flight.info = flight.env.reset(seed=task.instance.seed)
-        flight.maps.append((0, flight.env.unwrapped.world))  # type: ignore[attr-defined]
-    measured = measures(flight)
+        flight.maps.append((0, flight.env.unwrapped.episode.world))  # type: ignore[attr-defined]
+    measured = flight.measures()
     if changed := task.instance.change(measured["scenario_hash"]):
         return SuiteError(changed)
     if failure:

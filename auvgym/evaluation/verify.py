@@ -18,7 +18,7 @@ from typing import Any
 
 import auvgym
 from auvgym.evaluation.oceans import PREFIX
-from auvgym.evaluation.replay import replay
+from auvgym.evaluation.replay import replay_differences
 from auvgym.evaluation.result import EpisodeResult, PolicySpec
 from auvgym.evaluation.store import Store
 from auvgym.evaluation.suite import Instance, Suite
@@ -32,6 +32,7 @@ from auvgym.policies.shipped import list_agents
 OnRow = Callable[[int, int], None]
 # Wall clock, and what a policy outside this version may count differently.
 _NEVER_COMPARED = ("planning_seconds", "suite", "suite_hash")
+_HANDFUL = 32  # rows to a message between processes, which takes longer than one row
 
 
 @dataclass(frozen=True)
@@ -105,8 +106,7 @@ def check_row(check: tuple[EpisodeResult, bool]) -> list[str]:
             return _flown_again(row)
         if not _present(row):
             return [f"scenario: {row.scenario!r} is neither shipped nor a file here"]
-        env = environment(replace(row.instance, seed=0))
-        return replay(row, env=env).differences
+        return replay_differences(row, environment(replace(row.instance, seed=0)))
     except (ValueError, OSError, ImportError) as error:
         return [f"cannot be flown: {error}"]
 
@@ -118,9 +118,16 @@ def _checked(
         for check in checks:
             yield check, check_row(check)
         return
-    with closing(run_tasks(check_row, checks, workers)) as results:
-        for check, found in results:
-            yield check, [str(found)] if isinstance(found, ProcessDiedError) else found
+    handfuls = [checks[first : first + _HANDFUL] for first in range(0, len(checks), _HANDFUL)]
+    with closing(run_tasks(_check_rows, handfuls, workers)) as results:
+        for handful, found in results:
+            if isinstance(found, ProcessDiedError):
+                found = [[str(found)]] * len(handful)
+            yield from zip(handful, found, strict=True)
+
+
+def _check_rows(checks: Sequence[tuple[EpisodeResult, bool]]) -> list[list[str]]:
+    return [check_row(check) for check in checks]
 
 
 def _flown_again(row: EpisodeResult) -> list[str]:

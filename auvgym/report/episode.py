@@ -19,6 +19,7 @@ TRAIL_POINTS = 300
 FRAME_MS = 70
 
 Change = Callable[[float], dict[str, Any]]
+Plan = tuple[float, Points]
 
 
 def episode_figure(
@@ -26,6 +27,7 @@ def episode_figure(
     trail: Points,
     plan: Points | None = None,
     *,
+    plans: Sequence[Plan] = (),
     times_s: NDArray[np.float64] | None = None,
     title: str | None = None,
     subtitle: str = "",
@@ -38,6 +40,8 @@ def episode_figure(
             each map change, in order of their ``time_s`` (what ``env.unwrapped.world`` gave).
         trail: (k, 3) m, one point per flown tick.
         plan: (n, 3) m, a planned way to show beside it.
+        plans: when each plan was made, s, and its way, (n, 3) m, in order: each is shown from then
+            to the next.
         times_s: (k,) s of the trail's points; by default one tick of the scenario apart.
         title: by default the scenario's name.
         subtitle: a line below it.
@@ -60,7 +64,8 @@ def episode_figure(
     clock = np.asarray(
         np.arange(len(way)) * scene.facts.tick_s if times_s is None else times_s, dtype=np.float64
     )
-    stage = _Stage(scene, worlds, way, clock, plan)
+    shown = list(plans) if plan is None else [(-np.inf, plan), *plans]
+    stage = _Stage(scene, worlds, way, clock, shown)
     moments = np.linspace(clock[0], clock[-1], max(2, frames))
     figure = scene.go.Figure(
         data=stage.traces,
@@ -92,7 +97,7 @@ class _Stage:
         worlds: Sequence[World],
         trail: Points,
         clock: NDArray[np.float64],
-        plan: Points | None,
+        plans: Sequence[Plan],
     ) -> None:
         self.traces: list[Trace] = []
         self.changing: list[int] = []
@@ -107,8 +112,11 @@ class _Stage:
             self._add(trace)
         for index, world in enumerate(worlds):
             self._add_obstacles(scene, world, index)
-        if plan is not None and len(plan) > 1:
-            self._add(scene.way(plan, "plan", theme.PLAN, "dash"))
+        begins_s = [begin_s for begin_s, _ in plans] + [np.inf]
+        for (begin_s, plan), end_s in zip(plans, begins_s[1:], strict=True):
+            if len(plan) > 1:
+                trace = scene.way(plan, "plan", theme.PLAN, "dash")
+                self._add(trace, None if len(plans) == 1 else _between(begin_s, end_s))
         for trace in scene.ends():
             self._add(trace)
 
@@ -168,6 +176,10 @@ class _Stage:
         trace = scene.obstacles(moved(world.time_s))
         trace.name = "moving obstacles"
         self._add(trace, change)
+
+
+def _between(begin_s: float, end_s: float) -> Change:
+    return lambda moment_s: {"visible": begin_s <= moment_s < end_s}
 
 
 def _until(trail: Points, clock: NDArray[np.float64], moment_s: float) -> Points:

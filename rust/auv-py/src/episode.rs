@@ -5,7 +5,7 @@ use auv_env::observation::{self, Mode};
 use auv_env::replan::{Delay, Settings};
 use auv_planners::Control;
 use auv_world::math::Vec3;
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
@@ -29,6 +29,9 @@ pub fn observation_layout(dimensions: u8, replan: bool) -> Vec<(&'static str, us
 pub fn sonar_directions(py: Python<'_>, dimensions: u8) -> PyResult<Bound<'_, PyArray2<f64>>> {
     points::table(py, &auv_env::sonar::beams(dimensions))
 }
+
+/// (episode, sum of rewards, actions flown, (length of the trail, world) of each map).
+type Replayed = (Episode, f64, usize, Vec<(usize, World)>);
 
 /// Makes episodes from seeds.
 #[pyclass(frozen, module = "auvgym._core")]
@@ -69,6 +72,17 @@ impl Source {
     fn episode(&self, py: Python<'_>, seed: u64) -> PyResult<Episode> {
         let work = |control: &Control<'_>| self.0.begin(seed, Record::Everything, control);
         interrupt::run(py, work, errors::env).map(Episode)
+    }
+
+    /// The episode with this seed, flown by a log of (n, d) actions without looking.
+    fn replay(&self, py: Python<'_>, seed: u64, actions: PyReadonlyArray2<'_, f32>) -> PyResult<Replayed> {
+        let actions = actions.as_slice()?;
+        let work = |control: &Control<'_>| {
+            auv_env::Replay::fly(self.0.begin(seed, Record::Everything, control)?, actions, control)
+        };
+        let replay = interrupt::run(py, work, errors::env)?;
+        let maps = replay.maps.into_iter().map(|(length, world)| (length, World(world))).collect();
+        Ok((Episode(replay.episode), replay.reward, replay.flown, maps))
     }
 }
 
@@ -227,6 +241,28 @@ impl Episode {
     #[getter]
     fn straight_distance_m(&self) -> f64 {
         self.0.limits().distance_m
+    }
+
+    /// Time of the straight line in still water, s.
+    #[getter]
+    fn still_water_time_s(&self) -> f64 {
+        self.0.limits().distance_m / self.0.world().scenario().vehicle.speed_mps
+    }
+
+    /// LFHH cost of the path flown so far, through the maps that the vehicle met: (length of the trail, world)
+    /// of each. None if nothing was flown.
+    fn flown_cost(&self, maps: Vec<(usize, PyRef<'_, World>)>) -> PyResult<Option<f64>> {
+        let trail = &self.0.state().trail;
+        let ends = maps.iter().skip(1).map(|(length, _)| *length).chain([trail.len()]);
+        let pieces: Vec<_> = maps
+            .iter()
+            .zip(ends)
+            .map(|((begin, world), end)| {
+                let begin = begin.saturating_sub(1).min(trail.len());
+                (&world.0, &trail[begin..end.clamp(begin, trail.len())])
+            })
+            .collect();
+        auv_planners::cost::flown_cost(&pieces).map_err(errors::planning)
     }
 
     #[getter]

@@ -40,12 +40,15 @@ pub enum Test {
 }
 
 impl Test {
-    /// Prepares the test that the options ask for.
-    pub fn new(world: &World, cost: Cost, options: &CostOptions) -> Self {
+    /// Prepares the test that the options ask for; of `path` alone, if there is one.
+    pub fn new(world: &World, cost: Cost, options: &CostOptions, path: Option<&[Vec3]>) -> Self {
         let collision = options.collision_in(cost, world.scenario());
         if collision != Collision::Segment {
             let frame = Frame::new(world);
-            let map = CellMap::new(world, &frame);
+            let map = match path {
+                Some(path) => CellMap::of_path(world, &frame, path),
+                None => CellMap::new(world, &frame),
+            };
             let places = Places::new(&frame);
             return Self::Cells { frame, map, ends_only: collision == Collision::Waypoints, places };
         }

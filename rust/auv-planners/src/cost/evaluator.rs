@@ -36,6 +36,15 @@ impl Evaluator {
     /// # Errors
     /// [`PlanError`] if an option is not allowed.
     pub fn new(world: &World, cost: Cost, options: &CostOptions) -> Result<Self, PlanError> {
+        Self::prepare(world, cost, options, None)
+    }
+
+    /// The same for this one path, which is cheaper to prepare.
+    pub(super) fn for_path(world: &World, cost: Cost, options: &CostOptions, path: &[Vec3]) -> Result<Self, PlanError> {
+        Self::prepare(world, cost, options, Some(path))
+    }
+
+    fn prepare(world: &World, cost: Cost, options: &CostOptions, path: Option<&[Vec3]>) -> Result<Self, PlanError> {
         options.check()?;
         let limit = match options.angle {
             Angle::Turning => options.turn_limit_rad,
@@ -44,7 +53,7 @@ impl Evaluator {
         Ok(Self {
             cost,
             flow: Flow::new(world),
-            test: Test::new(world, cost, options),
+            test: Test::new(world, cost, options, path),
             vehicle: world.scenario().vehicle.clone(),
             turn_limit: libm::cos(limit),
             alpha: options.alpha,

@@ -4,11 +4,13 @@ mod angle;
 mod collision;
 mod current;
 mod evaluator;
+mod flown;
 mod options;
 mod segments;
 mod track;
 
 pub use evaluator::Evaluator;
+pub use flown::flown_cost;
 pub use options::{AlphaRange, Angle, Collision, Cost, CostOptions};
 pub(crate) use segments::Segments;
 
@@ -93,7 +95,7 @@ pub fn path_cost(world: &World, waypoints: &[Vec3], cost: Cost, options: &CostOp
     if let Some((i, point)) = waypoints.iter().enumerate().find(|(_, p)| p.iter().any(|v| !v.is_finite())) {
         return Err(PlanError::parameter(format!("waypoints[{i}]"), format!("{point:?}"), "must be finite"));
     }
-    let mut evaluator = Evaluator::new(world, cost, options)?;
+    let mut evaluator = Evaluator::for_path(world, cost, options, waypoints)?;
     Ok(evaluator.terms_of(waypoints))
 }
 

@@ -1,6 +1,9 @@
 //! The grid map of the sections (LFHH section III-B): cells that are free or blocked.
 
+use std::ops::RangeInclusive;
+
 use auv_world::World;
+use auv_world::math::Vec3;
 
 use super::Frame;
 
@@ -27,6 +30,20 @@ pub struct CellMap {
 impl CellMap {
     /// Maps the world as it is now.
     pub fn new(world: &World, frame: &Frame) -> Self {
+        Self::of_sections(world, frame, 0..=frame.count() - 1)
+    }
+
+    /// The sections that a path passes, the nearest ones where it leaves them: all that judging it asks for.
+    pub fn of_path(world: &World, frame: &Frame, path: &[Vec3]) -> Self {
+        let (first, last) = path.iter().fold((frame.count() - 1, 0), |(first, last), [x, y, _]| {
+            let section = nearest(frame.section(*x, *y) + 0.5, frame.count());
+            (first.min(section), last.max(section))
+        });
+        Self::of_sections(world, frame, first..=last)
+    }
+
+    /// Maps these sections; all others stay free.
+    fn of_sections(world: &World, frame: &Frame, mapped: RangeInclusive<usize>) -> Self {
         let scenario = world.scenario();
         let sections = frame.count();
         let edge = scenario.sections.as_ref().map_or(frame.spacing_m(), |sections| sections.cell_m);
@@ -41,14 +58,14 @@ impl CellMap {
         let density = edge.map(|edge| if edge > 0.0 { 1.0 / edge } else { 0.0 });
         let blocked = vec![false; sections * across * down];
         let mut map = Self { sections, across, down, low: [low, top], edge, density, blocked, pairs: Vec::new() };
-        for section in 0..sections {
+        for section in mapped.clone() {
             map.mark_floor(world, frame, section);
             map.mark_round(world, frame, section);
+            if world.has_other_solids() {
+                map.mark_others(world, frame, section);
+            }
         }
-        if world.has_other_solids() {
-            map.mark_others(world, frame);
-        }
-        map.sum_pairs();
+        map.sum_pairs(mapped);
         map
     }
 
@@ -99,23 +116,21 @@ impl CellMap {
         }
     }
 
-    fn mark_others(&mut self, world: &World, frame: &Frame) {
-        for section in 0..self.sections {
-            for down in 0..self.down {
-                for across in 0..self.across {
-                    let cell = self.index(section, across, down);
-                    let [lateral, depth] = self.centre(across, down);
-                    self.blocked[cell] =
-                        self.blocked[cell] || world.clearance(frame.point(section, lateral, depth)) <= 0.0;
-                }
+    fn mark_others(&mut self, world: &World, frame: &Frame, section: usize) {
+        for down in 0..self.down {
+            for across in 0..self.across {
+                let cell = self.index(section, across, down);
+                let [lateral, depth] = self.centre(across, down);
+                self.blocked[cell] = self.blocked[cell] || world.clearance(frame.point(section, lateral, depth)) <= 0.0;
             }
         }
     }
 
-    fn sum_pairs(&mut self) {
+    fn sum_pairs(&mut self, mapped: RangeInclusive<usize>) {
         let (width, height) = (self.across + 1, self.down + 1);
         self.pairs = vec![0; self.sections.saturating_sub(1) * width * height];
-        for (pair, table) in self.pairs.chunks_exact_mut(width * height).enumerate() {
+        let tables = self.pairs.chunks_exact_mut(width * height).enumerate();
+        for (pair, table) in tables.take(*mapped.end()).skip(*mapped.start()) {
             for down in 0..self.down {
                 let mut row = 0;
                 for across in 0..self.across {
@@ -280,6 +295,28 @@ mod tests {
                     if clearance.abs() > 1e-6 {
                         assert_eq!(map.is_blocked(section, i, k), clearance < 0.0, "{section} {i} {k}");
                     }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_sections_of_a_path_are_mapped_as_all_are() {
+        for world in [testing::paper_world("lfhh-3d-1", 0), testing::other_solids_world()] {
+            let frame = Frame::new(&world);
+            let all = CellMap::new(&world, &frame);
+            let path = [frame.point(7, 0.0, 0.0), frame.point(9, 0.0, 0.0)];
+            let some = CellMap::of_path(&world, &frame, &path);
+            let [across, down] = all.shape();
+            let cells = (0..down).flat_map(|k| (0..across).map(move |i| [i, k]));
+            for [i, k] in cells {
+                for section in 0..frame.count() {
+                    let expected = (7..=9).contains(&section) && all.is_blocked(section, i, k);
+                    assert_eq!(some.is_blocked(section, i, k), expected);
+                }
+                for section in [7, 8] {
+                    let (from, to) = ([section, 0, 0], [section + 1, i as u32, k as u32]);
+                    assert_eq!(some.is_free_between(from, to), all.is_free_between(from, to));
                 }
             }
         }
