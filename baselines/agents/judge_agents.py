@@ -56,6 +56,8 @@ def main() -> None:
     lines = []
     with Store(Path("results") / "agents" / "results.db") as store:
         for environment, (difficulties, planner) in JUDGED.items():
+            if environment not in policies.list_agents()[AGENT]:
+                continue
             if options.env and environment not in options.env:
                 continue
             for difficulty in difficulties:
