@@ -153,25 +153,38 @@ def test_threats_move_while_a_short_leg_is_flown() -> None:
         if ended:
             break
         leg, before = info["time_s"] - before, info["time_s"]
-        assert 15.0 <= leg <= 60.0
+        assert 3.0 <= leg <= 60.0
         here = [np.array(one["position_m"]) for one in core.world.snapshot()["obstacles"]]
         moved = [float(np.linalg.norm(b - a)) for a, b in zip(there, here, strict=True)]
-        # Slower than 1.8 m/s, but none stands still.
-        assert all(0.0 < way <= 1.8 * leg + 1e-6 for way in moved)
+        # No faster than 3.5 m/s, but none stands still.
+        assert all(0.0 < way <= 3.5 * leg + 1e-6 for way in moved)
 
 
 @pytest.mark.parametrize("difficulty", ["easy", "normal", "hard"])
 def test_the_straight_line_seldom_arrives_and_the_flow_nearly_always(difficulty: str) -> None:
     assert arrivals("straight", 40, difficulty=difficulty) < 20
-    assert arrivals("iifds-reactive", 15, difficulty=difficulty) >= 14
+    assert arrivals("iifds-reactive", 10, difficulty=difficulty) == 10
 
 
 # --- The navigator and its policy ----------------------------------------------------------------
 
 
 def test_the_papers_rules_arrive_less_often() -> None:
-    paper = arrivals("iifds-reactive", 30, {"rules": "paper"}, difficulty="hard")
-    assert 15 <= paper < arrivals("iifds-reactive", 30, difficulty="hard")
+    paper = arrivals("iifds-reactive", 20, {"rules": "paper"}, difficulty="hard")
+    assert 5 <= paper < arrivals("iifds-reactive", 20, difficulty="hard")
+
+
+@pytest.mark.parametrize("difficulty", ["easy", "hard"])
+def test_it_decides_anew_at_every_tick(difficulty: str) -> None:
+    env, policy = make(difficulty=difficulty), policies.make("iifds-reactive")
+    observation, info = env.reset(seed=1)
+    policy.reset(env)
+    tick, ended = env.unwrapped.world.scenario.to_dict()["episode"]["tick_s"], False
+    while not ended:
+        before = info["time_s"]
+        observation, _, ended, _, info = env.step(policy.act(observation, info))
+        assert info["time_s"] - before == pytest.approx(tick)
+    assert info["is_success"]
 
 
 @pytest.mark.parametrize("scenario", ["iifds-threat1", "iifds-threats3", "iifds-complex"])

@@ -8,7 +8,7 @@ class AUVThreat3DEnv(AUVEnv):
 
     ## Description
     A vehicle of 2 m/s goes 14.1 km from corner to corner of a box of 10 x 10 x 4 km, at 3 km depth,
-    through a meandering jet at rest, among three threats: spheres of 500 to 1000 m radius that move
+    through a meandering jet at rest, among six threats: spheres of 500 to 1000 m radius that move
     all the time, each on a level course at constant speed that meets a vehicle on the straight way
     or nearly so (after Yao & Zhao 2018). With ``manoeuvres`` they turn or zigzag on the way, and are seen to
     do so only as they do it. A threat that comes to a wall of the box is reflected. The
@@ -30,8 +30,8 @@ class AUVThreat3DEnv(AUVEnv):
     | 2 | up a reach |
 
     The waypoint is clipped to the box (100 m inside its side walls, the surface and the bottom). One step flies
-    towards it until it is within 100 m (after at least 15 s), 60 s have passed, or the episode ends:
-    5 to 20 physics ticks of 3 s.
+    towards it until it is within 100 m (after at least 3 s), 60 s have passed, or the episode ends:
+    1 to 20 physics ticks of 3 s, so that a waypoint less than 100 m off decides for one tick alone.
 
     ## Observation space
     ``Box(low, high, (97,), float32)``. V is the vehicle's speed, d0 the distance at the start, the
@@ -91,9 +91,9 @@ class AUVThreat3DEnv(AUVEnv):
     - ``scenario``: a shipped name (``iifds-threat1``, ``iifds-threats3``, ``iifds-complex``: exact
       sensors), the path of a TOML file or a Scenario; None draws new threats and a new jet of the
       family ``iifds`` for every episode. ``mission``: its start/goal pair.
-    - ``difficulty``: "easy", "normal" (default) or "hard": threats of at most 1, 1.8 or 3 m/s, a
-      jet of 0.2, 0.5 or 0.7 V on its centre line, time factor 1.5, 1.75 or 2.
-    - ``obstacles`` (3); ``obstacle_speed_mps``: of the fastest threat; ``current_ratio``: the jet's
+    - ``difficulty``: "easy", "normal" (default) or "hard": 3, 6 or 10 threats of at most 1, 3.5 or
+      4 m/s, a jet of 0.2, 0.5 or 0.7 V on its centre line, time factor 1.5, 1.75 or 2.
+    - ``obstacles``: how many threats; ``obstacle_speed_mps``: of the fastest threat; ``current_ratio``: the jet's
       speed over V, 0 for still water; ``time_factor``; ``vehicle_speed_mps``;
       ``manoeuvres``: "none" (default), "turn" (each in a circle), "zigzag" or "mixed";
       ``sensor_noise_m`` (20; 0: exact).

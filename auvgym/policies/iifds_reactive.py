@@ -26,7 +26,8 @@ class IifdsReactivePolicy(ScriptedPolicy):
 
     Each leg takes the measured places of the obstacles in the observation into a Kalman filter for
     each threat, and goes where the flow leads past the predicted ones (Yao & Zhao 2018, section V).
-    The measured velocities are left alone. Of the map it takes what does not move.
+    A leg is as short as the scenario allows: one tick in ``AUVThreat3D-v0``. The measured
+    velocities are left alone. Of the map it takes what does not move.
 
     Args:
         seed: unused; every policy takes one.
@@ -63,11 +64,12 @@ class IifdsReactivePolicy(ScriptedPolicy):
         self._noise_m = float(flight.get("sensor_noise_m", 0.0))
         self._range_m = float(flight["sonar_range_m"])
         self._leg_s = float(flight["minimum_leg_s"])
-        # Far enough ahead that the vehicle never keeps station, near enough to be captured in time.
+        # Far enough ahead that the vehicle never keeps station, near enough to be captured within
+        # the shortest leg even where the current carries it off.
         flown = float(scenario["vehicle"]["speed_mps"]) * self._leg_s
         beyond = float(flight["station_radius_m"]) + flown
         self._ahead_m = min(
-            max(float(flight["capture_radius_m"]), beyond), float(flight["reach_m"])
+            max(float(flight["capture_radius_m"]) / 2, beyond), float(flight["reach_m"])
         )
         # Where the environment puts waypoints.
         margin = np.minimum(
@@ -90,9 +92,9 @@ class IifdsReactivePolicy(ScriptedPolicy):
                     self._navigator.see(_point(centre), radius, time_s)
             self._navigator.forget(time_s - _LEGS_UNSEEN * self._leg_s)
             velocity, _ = self._navigator.course(_point(here), time_s, self._leg_s)
-        if not np.any(velocity):
-            return self.steer_to(self.goal)
-        return self.steer_to(self._along_walls(here, velocity))
+        return self.steer_to(
+            self._along_walls(here, velocity if np.any(velocity) else self.goal - here)
+        )
 
     def _along_walls(self, here: Vector, direction: Vector) -> Vector:
         """A waypoint ahead in a direction, as far off where walls leave only part of it."""

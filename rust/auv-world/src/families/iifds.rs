@@ -25,13 +25,14 @@ const LOOKS: u32 = 32;
 /// Tries before the box counts as full.
 const TRIES: usize = 1000;
 
-/// Greatest speed of a threat (m/s), the jet's over the vehicle's, and the time factor: such that the straight
-/// line seldom arrives and the flow's law of motion among threats nearly always.
-fn calibration(difficulty: Difficulty) -> (f64, f64, f64) {
+/// Threats, the greatest speed of one (m/s), the jet's over the vehicle's, and the time factor: such that at
+/// normal the straight line seldom arrives, the sonar rule in less than 80 %, and the flow's law of motion among
+/// threats nearly always.
+fn calibration(difficulty: Difficulty) -> (usize, f64, f64, f64) {
     match difficulty {
-        Difficulty::Easy => (1.0, 0.2, 1.5),
-        Difficulty::Normal => (1.8, 0.5, 1.75),
-        Difficulty::Hard => (3.0, 0.7, 2.0),
+        Difficulty::Easy => (3, 1.0, 0.2, 1.5),
+        Difficulty::Normal => (6, 3.5, 0.5, 1.75),
+        Difficulty::Hard => (10, 4.0, 0.7, 2.0),
     }
 }
 
@@ -53,7 +54,7 @@ pub(super) fn draw(seed: u64, parameters: &Parameters) -> Result<Scenario, World
             return Err(WorldError::parameter(name, "given", "iifds has threats and a jet, which never change"));
         }
     }
-    let (fastest, ratio, time_factor) = calibration(parameters.difficulty);
+    let (threats, fastest, ratio, time_factor) = calibration(parameters.difficulty);
     let fastest = not_negative("obstacle_speed_mps", parameters.obstacle_speed_mps, fastest)?;
     let ratio = not_negative("current_ratio", parameters.current_ratio, ratio)?;
     let speed = not_negative("vehicle_speed_mps", parameters.vehicle_speed_mps, 2.0)?;
@@ -63,7 +64,7 @@ pub(super) fn draw(seed: u64, parameters: &Parameters) -> Result<Scenario, World
     // In a stream of their own, so that they shift no other draw.
     let mut turns = Stream::new(seed, Purpose::Family, 6);
     let manoeuvres = parameters.manoeuvres.unwrap_or_default();
-    let count = parameters.obstacles.unwrap_or(3);
+    let count = parameters.obstacles.unwrap_or(threats);
     let threats =
         (0..count).map(|_| threat(&mut stream, &mission, speed, fastest, || manoeuvre(&mut turns, manoeuvres)));
     let obstacles = threats.collect::<Option<Vec<_>>>();
@@ -92,13 +93,14 @@ pub(super) fn draw(seed: u64, parameters: &Parameters) -> Result<Scenario, World
     })
 }
 
-/// Legs so short that a threat goes but a part of its radius meanwhile.
+/// Legs as short as a tick for who wants to decide at each, and never so long that a threat goes more than a
+/// part of its radius meanwhile.
 fn legs(sensor_noise_m: f64) -> Episode {
     Episode {
         tick_s: 3.0,
         reach_m: 600.0,
         capture_radius_m: 100.0,
-        minimum_leg_s: 15.0,
+        minimum_leg_s: 3.0,
         maximum_leg_s: 60.0,
         station_radius_m: 30.0,
         waypoint_margin_m: 100.0,
@@ -232,7 +234,7 @@ mod tests {
                 world.set_time(6.0 * f64::from(tick));
                 for (i, last) in last.iter_mut().enumerate() {
                     let place = world.obstacle_position(i);
-                    assert!(is_inside(place) && distance(place, *last) <= 6.0 * 1.8 + 1e-9);
+                    assert!(is_inside(place) && distance(place, *last) <= 6.0 * 3.5 + 1e-9);
                     *last = place;
                 }
             }
