@@ -12,8 +12,8 @@ from auvgym.policies.agents import CodeWarning
 from auvgym.policies.base import Knows, Policy, PolicyError, ScriptedPolicy, begin
 from auvgym.policies.planner import PlannerPolicy
 from auvgym.policies.registry import frozen_parameters, list_policies, list_triggers, make
-from auvgym.policies.triggers import Trigger
 from auvgym.policies.shipped import ShippedAgent, list_agents
+from auvgym.policies.triggers import Trigger
 
 __all__ = [
     "CodeWarning",
