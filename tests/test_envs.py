@@ -803,7 +803,12 @@ def test_the_reward_orders_policies_as_the_leaderboard_does(env_id: str) -> None
     env = make(env_id)
     arrived: list[float] = []
     failed: list[float] = []
-    seeds = {"straight": range(30), "random": range(12), "astar-replan": range(5)}
+    seeds = {
+        "straight": range(30),
+        "random": range(12),
+        "sonar-rule": range(12),
+        "astar-replan": range(5),
+    }
     for name, episodes in seeds.items():
         policy = policies.make(name)
         for seed in episodes:
