@@ -43,7 +43,7 @@ def train(
     validation_episodes: Annotated[int, typer.Option(help="How many of these seeds.")] = 256,
     torch_threads: Annotated[
         int,
-        typer.Option(help="For the networks; small ones are no faster on two."),
+        typer.Option(help="For the networks; the engine has threads of its own."),
     ] = 1,
     out: Annotated[
         Path | None, typer.Option(help="Folder of the training (default: results/train/NAME).")
