@@ -13,6 +13,8 @@ import auvgym
 Array = npt.NDArray[np.float64]
 
 WIDTH, LENGTH, DEPTH = 20_000.0, 20_000.0, 4_000.0
+# Strength (m^2/s) and core radius (m) of a Lamb-Oseen vortex.
+ETA, ZETA = 2000.0, 1200.0
 
 
 def open_water(dimensions: int = 2, **parts: Any) -> dict[str, Any]:
