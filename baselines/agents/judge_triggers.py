@@ -10,6 +10,7 @@ import argparse
 from pathlib import Path
 
 import numpy as np
+import shuffled_blocks
 from judge_agents import AGENT, Flown, interval, recipes, report
 
 from auvgym import policies
@@ -27,6 +28,8 @@ HERE = Path(__file__).parent
 DIFFICULTY = "hard"
 #: What follows the environment's id where an agent chooses when to plan.
 TRIGGER = "/replan"
+#: Episodes of the table that says what a trigger rests on.
+SHUFFLED = 500
 #: Scripted triggers, and the windows that they plan in.
 RIVALS = {
     "never": ("full",),
@@ -65,6 +68,10 @@ def main() -> None:
                 flown = fly(store, environment, network, options.episodes, options.workers)
                 page += report(rows(environment, flown))
     if not options.env:
+        page += shuffled_blocks.HEADER.format(episodes=SHUFFLED)
+        for task, network in trained.items():
+            environment = task.removesuffix(TRIGGER)
+            page += report(shuffled_blocks.table(environment, DIFFICULTY, network, SHUFFLED))
         (HERE / "triggers.md").write_text(page + "\n" + recipes(trained), encoding="utf-8")
 
 
