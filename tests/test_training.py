@@ -368,6 +368,12 @@ def test_shipped_agents_fly_by_name() -> None:
         policies.make("ppo").reset(odd)
 
 
+def test_a_shipped_agent_without_its_runtime_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "onnxruntime", None)
+    with pytest.raises(ImportError, match=r"auvgym\[agents\]"):
+        policies.make("ppo")
+
+
 def test_the_judgement_of_the_shipped_agents(tmp_path: Path) -> None:
     pytest.importorskip("onnxruntime")
     script = Path(__file__).parents[1] / "baselines" / "agents" / "judge_agents.py"
