@@ -105,6 +105,8 @@ def configure(
 ) -> TrainingConfig:
     """A training by the shipped recipe.
 
+    A recipe's mixture of difficulties is for trainings that name none.
+
     Args:
         algorithm: a name of :func:`auvgym.training.list_algorithms`.
         environment: a registered id.
@@ -120,10 +122,13 @@ def configure(
     if environment not in ENVIRONMENTS:
         raise TrainingError(unknown("environment", environment, ENVIRONMENTS))
     chosen = dict(settings or {})
-    if "scenario" not in chosen:
-        chosen.setdefault("difficulty", DEFAULT_DIFFICULTY)
     mode = str(chosen.get("action_mode", "waypoint"))
-    recipe = {**load_recipe(algorithm, environment, mode), **(hyperparameters or {})}
+    recipe = load_recipe(algorithm, environment, mode)
+    if "scenario" in chosen or "difficulty" in chosen:
+        recipe.pop("mixture", None)
+    else:
+        chosen["difficulty"] = DEFAULT_DIFFICULTY
+    recipe |= hyperparameters or {}
     recipe_timesteps = recipe.pop("timesteps")
     return TrainingConfig(
         algorithm,
