@@ -29,7 +29,7 @@ DIFFICULTY = "hard"
 #: What follows the environment's id where an agent chooses when to plan.
 TRIGGER = "/replan"
 #: Episodes of the table that says what a trigger rests on.
-SHUFFLED = 200
+SHUFFLED = 500
 #: Scripted triggers, and the windows that they plan in.
 RIVALS = {
     "never": ("full",),
