@@ -362,7 +362,7 @@ def test_the_command_line(trained: Path, tmp_path: Path) -> None:
 
 def test_shipped_agents_fly_by_name() -> None:
     agents = policies.list_agents()
-    assert {"AUVDynamic2D-v0", "AUVDynamic3D-v0", "AUVHarbor2D-v0"} <= set(agents["ppo"])
+    assert set(ENVIRONMENTS) <= set(agents["ppo"])
     assert "ppo" in policies.list_policies()
     for environment, path in agents["ppo"].items():
         card = json.loads(path.with_suffix(".json").read_text())
