@@ -32,6 +32,7 @@ with warnings.catch_warnings():
     from auvgym.training import models
     from auvgym.training.export import export_onnx, largest_difference
     from auvgym.training.flights import Examination
+    from auvgym.training.stride import OFFSET, SCALE, stride
 
 TINY = {"n_envs": 4, "n_steps": 8, "batch_size": 32, "n_epochs": 1, "net_arch": [8]}
 # Enough to see it go: short episodes, few of them.
@@ -238,9 +239,43 @@ def test_environments_begin_in_the_range_for_training() -> None:
     assert drawn == expected
 
 
+def test_waypoints_are_never_where_the_vehicle_is() -> None:
+    config = tiny(hyperparameters={"least_waypoint": 0.2})
+    envs, plain = models.make_envs(config, None), models.plain_envs(tiny())
+    for one in (envs, plain):
+        models.seed_envs(one, config, part=0)
+        one.reset()
+    stays = np.full((4, 2), [-1 / 3, 0.01], np.float32)  # forward 0, left 0.01 reach
+    seen, expected = envs.step(stays)[0], plain.step(stride(stays, 0.2))[0]
+    np.testing.assert_array_equal(seen, expected)
+    assert (seen != plain.step(stays)[0]).any(axis=1).all()
+    rng = np.random.default_rng(0)
+    for wide in (2, 3):
+        actions = rng.uniform(-1.2, 1.2, (500, wide)).astype(np.float32)
+        strides, clipped = stride(actions, 0.2), np.clip(actions, -1, 1)
+        scale, offset = np.array(SCALE[:wide]), np.array(OFFSET[:wide])
+        before, after = clipped * scale + offset, strides * scale + offset
+        length = np.linalg.norm(before, axis=1)
+        near = length < 0.2
+        assert near.any()
+        np.testing.assert_array_equal(strides[~near], clipped[~near])
+        shortest = before[near] / length[near, None] * 0.2
+        np.testing.assert_allclose(after[near], shortest, atol=1e-5)
+
+
+@pytest.mark.parametrize("environment", ["AUVDynamic2D-v0", "AUVDynamic3D-v0"])
+def test_files_ask_for_no_nearer_waypoints_either(environment: str, tmp_path: Path) -> None:
+    model, envs = small("ppo", environment, action_bias=[-0.3])
+    path = tmp_path / "agent.onnx"
+    assert export_onnx(model, path, least=0.5) < 1e-5
+    assert largest_difference(model, path) > 0.01  # the model itself asks for its own place
+    envs.close()
+
+
 def test_a_mixture_of_difficulties_is_for_trainings_that_name_none() -> None:
-    both = [{"difficulty": "normal"}, {"difficulty": "hard"}]
-    assert configure("ppo", "AUVDynamic2D-v0").hyperparameters["mixture"] == both
+    mixture = configure("ppo", "AUVDynamic2D-v0").hyperparameters["mixture"]
+    assert {"difficulty": "normal"} in mixture
+    assert {"difficulty": "hard"} in mixture
     for settings in ({"difficulty": "easy"}, {"scenario": "lfhh-2d-1"}):
         named = configure("ppo", "AUVDynamic2D-v0", settings=settings)
         assert "mixture" not in named.hyperparameters
@@ -292,6 +327,8 @@ def test_the_first_actions_go_where_the_bias_says() -> None:
         ({"hyperparameters": {"activation_fn": "tan"}}, "did you mean 'tanh'"),
         ({"hyperparameters": {"policy": "CnnPolic"}}, "unknown policy 'CnnPolic'"),
         ({"hyperparameters": {"normalize": "all"}}, "unknown normalize 'all'"),
+        ({"hyperparameters": {"least_waypoint": 0.7}}, "must be reaches, more than 0"),
+        ({"hyperparameters": {"least_waypoint": "far"}}, "least_waypoint = 'far': must be a num"),
         ({"hyperparameters": {"mixture": []}}, None),
         ({"hyperparameters": {"mixture": "hard"}}, "mixture = 'hard': must be a list"),
         ({"hyperparameters": {"action_bias": [0, 0, 0]}}, "action_bias = "),

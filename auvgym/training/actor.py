@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from auvgym.training.stride import stride
+
 
 class Actor:
     """What a model of Stable-Baselines3 does where it is not exploring.
@@ -14,11 +16,13 @@ class Actor:
     Args:
         model: the model.
         normalizer: its ``VecNormalize``, or None.
+        least: shortest distance of a waypoint, in reaches, or None (:mod:`auvgym.training.stride`).
     """
 
-    def __init__(self, model: Any, normalizer: Any = None) -> None:
+    def __init__(self, model: Any, normalizer: Any = None, least: float | None = None) -> None:
         self._model = model
         self._normalizer = normalizer
+        self._least = least
         self._state: Any = None
 
     def __call__(
@@ -30,4 +34,4 @@ class Actor:
         actions, self._state = self._model.predict(
             observations, state=self._state, episode_start=begins, deterministic=True
         )
-        return np.asarray(actions)
+        return np.asarray(actions) if self._least is None else stride(actions, self._least)

@@ -41,6 +41,7 @@ class Validation(BaseCallback):  # type: ignore[misc]
         seconds: the clock: wall seconds of the training so far.
         keep: called with whether the network is the best so far.
         on_row: called with each row.
+        least: shortest distance of a waypoint, or None.
     """
 
     def __init__(
@@ -51,8 +52,10 @@ class Validation(BaseCallback):  # type: ignore[misc]
         seconds: Callable[[], float],
         keep: Callable[[bool], None],
         on_row: OnRow,
+        least: float | None = None,
     ) -> None:
         super().__init__()
+        self._least = least
         self._examination, self._every, self._curve = examination, every, curve
         self._seconds, self._keep, self._on_row = seconds, keep, on_row
         self._next = every
@@ -74,7 +77,8 @@ class Validation(BaseCallback):  # type: ignore[misc]
         rows = self._curve.rows
         if rows and rows[-1].timesteps == self.num_timesteps:
             return
-        flown = self._examination.fly(Actor(self.model, self.model.get_vec_normalize_env()))
+        normalizer = self.model.get_vec_normalize_env()
+        flown = self._examination.fly(Actor(self.model, normalizer, self._least))
         found = flown.summary()
         best = self._curve.best
         is_best = best is None or found["return"] > best.return_

@@ -22,7 +22,7 @@ def write_agent(
     model = algorithm_class(config.algorithm).load(place.model("best"), device="cpu")
     statistics = place.statistics_of("best")
     normalizer = None if statistics is None else _read_statistics(statistics)
-    difference = export_onnx(model, place.onnx, normalizer)
+    difference = export_onnx(model, place.onnx, normalizer, config.least_waypoint)
     card = _card(config, state, curve) | {
         "sha256": file_hash(str(place.onnx)),
         "largest_difference_to_torch": difference,

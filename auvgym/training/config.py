@@ -66,6 +66,14 @@ class TrainingConfig:
         return int(self.hyperparameters["n_envs"])
 
     @property
+    def least_waypoint(self) -> float | None:
+        """Shortest distance of a waypoint that an agent asks for, in reaches."""
+        given = self.hyperparameters.get("least_waypoint")
+        if given is not None and (isinstance(given, bool) or not isinstance(given, int | float)):
+            raise TrainingError(f"least_waypoint = {given!r}: must be a number of reaches, as 0.2")
+        return given
+
+    @property
     def name(self) -> str:
         """``ppo-AUVDynamic2D-v0-normal``: what the folder is called unless told otherwise."""
         mode = self.settings.get("action_mode", "waypoint")

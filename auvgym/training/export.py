@@ -17,6 +17,7 @@ import numpy.typing as npt
 from auvgym._extras import require
 from auvgym.training.actor import Actor
 from auvgym.training.config import TrainingError
+from auvgym.training.stride import OFFSET, SCALE, SHORTEST
 
 OPSET, IR_VERSION = 17, 9
 #: Largest difference between an action of the file and one of the model.
@@ -24,7 +25,13 @@ TOLERANCE = 1e-4
 _ACTIVATIONS = {"Tanh": "Tanh", "ReLU": "Relu", "ELU": "Elu", "Sigmoid": "Sigmoid"}
 
 
-def export_onnx(model: Any, path: Path, normalizer: Any = None, probe: int = 64) -> float:
+def export_onnx(
+    model: Any,
+    path: Path,
+    normalizer: Any = None,
+    least: float | None = None,
+    probe: int = 64,
+) -> float:
     """Write a model's deterministic policy, (n, k) float32 observations to (n, d) actions.
 
     Actions are clipped to their box; discrete ones are (n,) int64. A memory is a second and third
@@ -34,6 +41,7 @@ def export_onnx(model: Any, path: Path, normalizer: Any = None, probe: int = 64)
         model: of Stable-Baselines3: PPO, RecurrentPPO, SAC, TQC or DQN.
         path: of the file.
         normalizer: the ``VecNormalize`` that it was trained with, or None.
+        least: shortest distance of a waypoint, in reaches, or None (:mod:`auvgym.training.stride`).
         probe: observations that the file is held to the model with, in steps of one episode.
 
     Returns:
@@ -54,21 +62,25 @@ def export_onnx(model: Any, path: Path, normalizer: Any = None, probe: int = 64)
         graph.node("ArgMax", axis=1, keepdims=0)
     else:
         graph.clip(-1.0, 1.0)
+        if least is not None:
+            graph.stride(least, model.action_space.shape[0])
     graph.save(path, None if discrete else model.action_space.shape[0])
-    difference = largest_difference(model, path, normalizer, probe)
+    difference = largest_difference(model, path, normalizer, least, probe)
     if difference > TOLERANCE:
         raise TrainingError(f"{path}: its actions differ from the model's by {difference:.2g}")
     return difference
 
 
-def largest_difference(model: Any, path: Path, normalizer: Any = None, probe: int = 64) -> float:
+def largest_difference(
+    model: Any, path: Path, normalizer: Any = None, least: float | None = None, probe: int = 64
+) -> float:
     """The largest difference between actions of a file and of the model it was made from."""
     session = require("onnxruntime", "train").InferenceSession(
         str(path), providers=["CPUExecutionProvider"]
     )
     names = [one.name for one in session.get_inputs()]
     memory = {one.name: np.zeros((1, one.shape[1]), np.float32) for one in session.get_inputs()[1:]}
-    actor, worst = Actor(model, normalizer), 0.0
+    actor, worst = Actor(model, normalizer, least), 0.0
     low, high = model.observation_space.low, model.observation_space.high
     drawn = np.random.default_rng(0).uniform(low, high, (probe, len(low))).astype(np.float32)
     for index, observation in enumerate(drawn):
@@ -159,6 +171,30 @@ class _Graph:
         """Append a clip."""
         bounds = [self._constant(np.array(bound, np.float32)) for bound in (low, high)]
         self.node("Clip", *bounds)
+
+    def stride(self, least: float, wide: int) -> None:
+        """What :func:`auvgym.training.stride.stride` does to clipped actions."""
+        given = self._end
+        offset, scale = (
+            self._constant(np.array(one[:wide], np.float32)) for one in (OFFSET, SCALE)
+        )
+        bound = self._constant(np.array(least, np.float32))
+        self.node("Mul", scale)
+        self.node("Add", offset)
+        asked = self._end
+        self.node("ReduceL2", axes=[1], keepdims=1)
+        length = self._end
+        self.node("Less", bound)
+        near = self._end
+        self._end = length
+        self.node("Max", self._constant(np.array(SHORTEST, np.float32)))
+        length, self._end = self._end, bound
+        self.node("Div", length)
+        self.node("Mul", asked)
+        self.node("Sub", offset)
+        self.node("Div", scale)
+        moved, self._end = self._end, near
+        self.node("Where", moved, given)
 
     def _lstm(self, layer: Any) -> None:
         """One step of an LSTM: torch has its gates as i f g o, ONNX as i o f g."""

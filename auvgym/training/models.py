@@ -12,6 +12,7 @@ from auvgym._names import unknown
 from auvgym.evaluation.seeds import training_seed
 from auvgym.training.config import TrainingConfig, TrainingError
 from auvgym.training.mixture import MixedVecEnv
+from auvgym.training.stride import LONGEST, SHORTEST, StrideVecEnv
 
 #: Algorithm -> where its class is.
 CLASSES = {
@@ -22,7 +23,7 @@ CLASSES = {
     "dqn": ("stable_baselines3", "DQN"),
 }
 #: Hyperparameters that are this package's own.
-OWN = ("policy", "n_envs", "mixture", "normalize", "action_bias")
+OWN = ("policy", "n_envs", "mixture", "normalize", "action_bias", "least_waypoint")
 NORMALIZE = {
     None: None,
     "observations": {"norm_obs": True, "norm_reward": False},
@@ -94,9 +95,17 @@ def plain_envs(config: TrainingConfig) -> Any:
         ]
     except TypeError as error:  # a setting that the environment does not have
         raise TrainingError(f"{config.environment}: {error}") from error
-    if len(parts) == 1:
-        return parts[0]
-    return MixedVecEnv(parts)
+    envs = parts[0] if len(parts) == 1 else MixedVecEnv(parts)
+    least = config.least_waypoint
+    if least is None:
+        return envs
+    if hasattr(envs.action_space, "n"):
+        raise TrainingError(f"least_waypoint = {least}: there are no waypoints to choose here")
+    if not SHORTEST < least <= LONGEST:
+        raise TrainingError(
+            f"least_waypoint = {least}: must be reaches, more than 0 and at most {LONGEST}"
+        )
+    return StrideVecEnv(envs, least)
 
 
 def make_model(config: TrainingConfig, envs: Any) -> Any:

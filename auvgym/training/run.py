@@ -148,6 +148,7 @@ class _Run:
             self.seconds,
             lambda best: self._keep(model, best),
             on_row,
+            config.least_waypoint,
         )
         left = config.timesteps - model.num_timesteps
         try:
