@@ -13,7 +13,7 @@ use crate::error::WorldError;
 use crate::lanes::LANES;
 use crate::math::{Vec2, Vec3, distance, norm};
 use crate::motion::Body;
-use crate::obstacles::{Beams, Discs, Solid, Spheres, polygon::Prism};
+use crate::obstacles::{Beams, Discs, Solid, Solids, Spheres, polygon::Prism};
 use crate::rng::{Purpose, Stream};
 use crate::scenario::{Change, Current, Hold, Jet, Manoeuvre, Mission, Obstacle, Redraw, Scenario, Seabed};
 use crate::seabed::Floor;
@@ -61,7 +61,7 @@ pub struct World {
     eddies: Vec<Body>,
     spheres: Spheres,
     discs: Discs,
-    solids: Vec<Solid>,
+    solids: Solids,
     vortices: VortexField,
 }
 
@@ -141,7 +141,7 @@ impl World {
                 }
             }
         }
-        let (mut spheres, mut discs, mut solids) = (Spheres::default(), Discs::default(), Vec::new());
+        let (mut spheres, mut discs, mut solids) = (Spheres::default(), Discs::default(), Solids::default());
         let mut slots = Vec::with_capacity(scenario.obstacles.len());
         let mut bodies = Vec::with_capacity(scenario.obstacles.len());
         for obstacle in &scenario.obstacles {
@@ -157,15 +157,15 @@ impl World {
                 }
                 Obstacle::Cylinder(shape) => {
                     solids.push(Solid::Cylinder(shape.clone()));
-                    Slot::Solid(solids.len() - 1)
+                    Slot::Solid(solids.shapes().len() - 1)
                 }
                 Obstacle::Superquadric(shape) => {
                     solids.push(Solid::Superquadric(shape.clone()));
-                    Slot::Solid(solids.len() - 1)
+                    Slot::Solid(solids.shapes().len() - 1)
                 }
                 Obstacle::Polygon(shape) => {
                     solids.push(Solid::Polygon(Prism::new(shape)));
-                    Slot::Solid(solids.len() - 1)
+                    Slot::Solid(solids.shapes().len() - 1)
                 }
             });
         }
@@ -259,12 +259,12 @@ impl World {
 
     /// Cylinders, superquadrics and polygons at the present time.
     pub fn solids(&self) -> &[Solid] {
-        &self.solids
+        self.solids.shapes()
     }
 
     /// Whether there are obstacles other than spheres and discs.
     pub fn has_other_solids(&self) -> bool {
-        !self.solids.is_empty()
+        !self.solids.shapes().is_empty()
     }
 
     /// Vortices at the present time.
@@ -327,7 +327,7 @@ impl World {
             match self.slots[i] {
                 Slot::Sphere(slot) => self.spheres.place(slot, position),
                 Slot::Disc(slot) => self.discs.place(slot, [position[0], position[1]]),
-                Slot::Solid(slot) => self.solids[slot].place(position),
+                Slot::Solid(slot) => self.solids.place(slot, position),
             }
         }
         self.spheres.arrange();
@@ -357,11 +357,8 @@ impl World {
     /// obstacles and sea floor, exact for spheres and discs, never too large for the others.
     #[inline]
     pub fn clearance(&self, point: Vec3) -> f64 {
-        let mut nearest = self.spheres.clearance(point).min(self.discs.clearance(point));
-        for solid in &self.solids {
-            nearest = nearest.min(solid.clearance(point));
-        }
-        self.fixed.floor.clearance(point, nearest)
+        let round = self.spheres.clearance(point).min(self.discs.clearance(point));
+        self.fixed.floor.clearance(point, self.solids.clearance(point, round))
     }
 
     /// Depth of the sea floor (m) at (x, y); infinite where there is none.
@@ -386,10 +383,9 @@ impl World {
             free = self.spheres.range(origin, &beams, free, &scratch.spheres);
             free = self.discs.range(origin, &beams, free, &scratch.discs);
             free = self.fixed.floor.range(origin, &beams, free, &scratch.floor);
-            for ((direction, range), free) in directions.iter().zip(ranges).zip(free.to_array()) {
-                *range = self.solids.iter().fold(free, |free, solid| solid.range(origin, *direction, free));
-            }
+            ranges.copy_from_slice(&free.to_array()[..directions.len()]);
         }
+        self.solids.range(origin, directions, longest, ranges);
     }
 
     /// The lesser of `nearest` and how far beams run before they meet a wall of the box or the surface (m).
