@@ -74,7 +74,9 @@ impl VortexField {
         // In four lanes that are added up at the end, two at a time: those far away cost less.
         let (mut u, mut v) = ([f64x2::ZERO; 2], [f64x2::ZERO; 2]);
         let centres = self.x.halves().zip(self.y.halves());
-        for ((cx, cy), (strength, inverse_core2)) in centres.zip(self.strength.halves().zip(self.inverse_core2.halves())) {
+        for ((cx, cy), (strength, inverse_core2)) in
+            centres.zip(self.strength.halves().zip(self.inverse_core2.halves()))
+        {
             for half in 0..2 {
                 let (dx, dy) = (x - cx[half], y - cy[half]);
                 let factor = strength[half] * falloff(dx * dx + dy * dy, inverse_core2[half]);

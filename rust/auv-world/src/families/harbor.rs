@@ -2,7 +2,6 @@
 //! a uniform current, as Huang & Jin (2021) have them. A way from start to goal always exists, and is never
 //! straight. Vessels, if asked for, cross the basin at constant velocity.
 
-use std::cmp::Reverse;
 use std::f64::consts::TAU;
 
 use super::{Difficulty, Parameters, few, not_negative};
@@ -230,7 +229,6 @@ fn has_way(solids: &Solids, mission: &Mission) -> bool {
         |cell: usize| -> Vec3 { [((cell % CELLS) as f64 + 0.5) * CELL, ((cell / CELLS) as f64 + 0.5) * CELL, 0.0] };
     let cell = |point: Vec3| (point[1] / CELL) as usize * CELLS + (point[0] / CELL) as usize;
     let (start, goal) = (cell(mission.start_m), cell(mission.goal_m));
-    let far = |&cell: &usize| (cell % CELLS).abs_diff(goal % CELLS) + (cell / CELLS).abs_diff(goal / CELLS);
     let mut seen = vec![false; CELLS * CELLS];
     let mut open = vec![start];
     seen[start] = true;
@@ -242,17 +240,19 @@ fn has_way(solids: &Solids, mission: &Mission) -> bool {
             return true;
         }
         let (column, row) = (here % CELLS, here / CELLS);
-        let mut beside = [
-            (column > 0).then(|| here - 1),
-            (column + 1 < CELLS).then_some(here + 1),
-            (row > 0).then(|| here - CELLS),
-            (row + 1 < CELLS).then_some(here + CELLS),
+        // Neighbours, and whether they are nearer to the goal.
+        let beside = [
+            (column > 0, here.wrapping_sub(1), goal % CELLS < column),
+            (column + 1 < CELLS, here + 1, column < goal % CELLS),
+            (row > 0, here.wrapping_sub(CELLS), goal / CELLS < row),
+            (row + 1 < CELLS, here + CELLS, row < goal / CELLS),
         ];
-        // The nearest to the goal comes first: most ways show before most of the basin has been looked at.
-        beside.sort_unstable_by_key(|there| Reverse(there.as_ref().map(far)));
-        for there in beside.into_iter().flatten() {
-            if !std::mem::replace(&mut seen[there], true) {
-                open.push(there);
+        // Those are looked at first: most ways show before most of the basin has been looked at.
+        for nearer in [false, true] {
+            for (inside, there, towards) in beside {
+                if inside && towards == nearer && !std::mem::replace(&mut seen[there], true) {
+                    open.push(there);
+                }
             }
         }
     }

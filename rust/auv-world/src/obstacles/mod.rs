@@ -9,7 +9,7 @@ mod round;
 mod solids;
 mod superquadric;
 
-pub use round::{Beams, Discs, Spheres};
+pub use round::{BeamColumns, Beams, Discs, Echo, Spheres};
 pub use solids::Solids;
 
 use crate::math::{Vec2, Vec3, add_scaled};
