@@ -32,7 +32,7 @@ def run_example(name: str, *arguments: str, folder: Path) -> str:
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=300,  # a guard: Ray alone takes a minute to start on a busy machine
         check=False,
     )
     assert done.returncode == 0, done.stderr
@@ -88,7 +88,6 @@ def test_ppo_in_one_file(tmp_path: Path) -> None:
 def test_train_rllib(tmp_path: Path) -> None:
     pytest.importorskip("torch")
     pytest.importorskip("ray")
-    pytest.importorskip("tree")
     sizes = ["--iterations", "1", "--batch", "256", "--envs", "4", "--runners", "0"]
     printed = run_example("train_rllib.py", *sizes, folder=tmp_path)
     assert re.search(r"^ +0 +\d+ legs  return", printed, re.MULTILINE)

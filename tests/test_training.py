@@ -238,6 +238,21 @@ def test_environments_begin_in_the_range_for_training() -> None:
     assert drawn == expected
 
 
+def test_a_mixture_of_difficulties_is_for_trainings_that_name_none() -> None:
+    both = [{"difficulty": "normal"}, {"difficulty": "hard"}]
+    assert configure("ppo", "AUVDynamic2D-v0").hyperparameters["mixture"] == both
+    for settings in ({"difficulty": "easy"}, {"scenario": "lfhh-2d-1"}):
+        named = configure("ppo", "AUVDynamic2D-v0", settings=settings)
+        assert "mixture" not in named.hyperparameters
+        assert named.settings == settings
+    replan = configure("ppo", "AUVDynamic2D-v0", settings={"action_mode": "replan"})
+    assert "mixture" not in replan.hyperparameters
+    for more, left in [({"difficulty": "hard"}, True), ({"planner": "rrt-star"}, False)]:
+        settings = {"action_mode": "replan", **more}
+        coarse = configure("ppo", "AUVDynamic3D-v0", settings=settings).hyperparameters
+        assert ("mixture" in coarse) == left
+
+
 def test_a_mixture_is_shared_out() -> None:
     mixture = [{"time_factor": 1.1}, {"time_factor": 1.5}]
     config = tiny(hyperparameters={"n_envs": 5, "mixture": mixture})
@@ -368,6 +383,12 @@ def test_shipped_agents_fly_by_name() -> None:
         policies.make("ppo").reset(odd)
 
 
+def test_a_shipped_agent_without_its_runtime_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "onnxruntime", None)
+    with pytest.raises(ImportError, match=r"auvgym\[agents\]"):
+        policies.make("ppo")
+
+
 def test_the_judgement_of_the_shipped_agents(tmp_path: Path) -> None:
     pytest.importorskip("onnxruntime")
     script = Path(__file__).parents[1] / "baselines" / "agents" / "judge_agents.py"
@@ -380,7 +401,7 @@ def test_the_judgement_of_the_shipped_agents(tmp_path: Path) -> None:
     )
     assert done.returncode == 0, done.stderr
     lines = [line.split(" | ") for line in done.stdout.splitlines()]
-    assert [line[2] for line in lines] == ["ppo", "sonar-rule", "visibility"] * 2
+    assert [line[2] for line in lines] == ["ppo", "sonar-rule", "astar"] * 2
     for agent, *others in (lines[:3], lines[3:]):
         for other in others:
             solved, time_share = float(other[3].split()[0]), float(other[4])

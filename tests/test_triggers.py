@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -76,6 +80,54 @@ def test_they_are_named_and_refuse_what_they_cannot() -> None:
         policies.make("never").reset(waypoint)
 
 
+# --- trained ones ---------------------------------------------------------------------------------
+
+
+def total_times(environment: str, seeds: range, name: str, **parameters: Any) -> np.ndarray:
+    """Travel and planning together over the time limit, failures counted as the limit."""
+    env = gymnasium.make(environment, action_mode="replan", difficulty="hard")
+    shares = []
+    for seed in seeds:
+        info, _ = fly(env, seed, name, **parameters)
+        limit_s = env.unwrapped.episode.time_limit_s
+        shares.append(info["time_s"] / limit_s if info["is_success"] else 1.0)
+    return np.array(shares)
+
+
+@pytest.mark.parametrize(("environment", "episodes"), [("AUVDynamic2D-v0", 30)])
+def test_the_shipped_trigger_beats_planning_to_the_goal(environment: str, episodes: int) -> None:
+    pytest.importorskip("onnxruntime")
+    seeds = range(90_000, 90_000 + episodes)
+    agent = total_times(environment, seeds, "ppo")
+    for name in ("every-change", "on-predicted-collision"):
+        gained = total_times(environment, seeds, name) - agent
+        assert gained.mean() > 2.0 * gained.std(ddof=1) / episodes**0.5, name
+
+
+def test_the_judgement_of_the_shipped_triggers(tmp_path: Path) -> None:
+    pytest.importorskip("onnxruntime")
+    script = Path(__file__).parents[1] / "baselines" / "agents" / "judge_triggers.py"
+    done = subprocess.run(
+        [sys.executable, script, "--episodes", "3", "--workers", "1", "--env", "AUVDynamic2D-v0"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    agent, *others = (line.split(" | ") for line in done.stdout.splitlines())
+    assert [agent[1], others[0][1], others[3][1]] == ["ppo", "never", "every-change, short"]
+    assert len(others) == 6
+    assert others[0][4:7] == ["0.0", "0.0", "0.0"]
+    assert float(others[1][6]) > 3.0
+    assert others[3][5:7] == ["0.0", "0.0"]
+    for other in others:
+        gained, faster = (float(cell.split()[0]) for cell in other[7:9])
+        solved = float(agent[2].split()[0]) - float(other[2].split()[0])
+        assert gained == pytest.approx(solved, abs=0.11)
+        assert faster == pytest.approx(float(agent[3]) - float(other[3]), abs=2e-3)
+
+
 # --- on the board ---------------------------------------------------------------------------------
 
 
@@ -102,9 +154,11 @@ def test_who_flies_where() -> None:
         ("random", True, True),
         ("straight", False, True),
         ("lfhh", False, True),
+        ("ppo", True, True),
     ]:
         assert fitting(PolicySpec(name), replan) is here
         assert fitting(PolicySpec(name), waypoint) is there
+    assert not fitting(PolicySpec("ppo"), replace(replan, environment="AUVHarbor2D-v0"))
 
 
 def test_on_the_command_line(tmp_path: Path) -> None:

@@ -133,16 +133,17 @@ def run(
 def fitting(spec: PolicySpec, instance: Instance) -> bool:
     """Whether a policy can fly an instance at all: a planner for harbours plans in no tank.
 
-    Triggers fly in re-plan mode, and of the others only ``random`` does. A planner is asked for a
-    plan of one evaluation in a world of the instance's kind, a trained agent for a network of the
-    environment; everybody else can.
+    A trained agent is asked for a network of the environment and its action mode. Of the others,
+    triggers fly in re-plan mode, ``random`` in both. A planner is asked for a plan of one
+    evaluation in a world of the instance's kind; everybody else can.
     """
     replans = '"action_mode": "replan"' in instance.settings
-    if spec.name != "random" and replans != (spec.name in policies.list_triggers()):
-        return False
     agents = policies.list_agents()
     if spec.name in agents:
-        return instance.environment in agents[spec.name]
+        task = f"{instance.environment}/replan" if replans else instance.environment
+        return task in agents[spec.name]
+    if spec.name != "random" and replans != (spec.name in policies.list_triggers()):
+        return False
     if spec.name not in auvgym.list_planners():
         return True
     return _can_plan(spec.name, replace(instance, seed=0))

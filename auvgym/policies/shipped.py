@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from auvgym._extras import require
 from auvgym._names import unknown
 from auvgym.policies.agents import OnnxPolicy
 from auvgym.policies.base import Action, Knows, Observation, PolicyError
@@ -55,6 +56,7 @@ class ShippedAgent:
         agents = list_agents()
         if agent not in agents:
             raise PolicyError(unknown("agent", agent, agents))
+        require("onnxruntime", "agents")  # a board says it once, before it flies
         self.name = agent
         self.description = f"trained network, for {', '.join(agents[agent])}"
         self._files = agents[agent]

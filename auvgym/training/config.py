@@ -16,6 +16,8 @@ from auvgym.training.recipes import load_recipe
 SCHEMA = 1
 #: Up to these the seeds of trainings stay apart (:mod:`auvgym.evaluation.seeds`).
 MAX_ENVS, MAX_SEED = 10_000, 2_000
+#: Settings that settle others: those are named by them, too.
+_DECIDES = {"scenario": "difficulty", "planner": "planner_parameters"}
 
 
 class TrainingError(ValueError):
@@ -105,6 +107,8 @@ def configure(
 ) -> TrainingConfig:
     """A training by the shipped recipe.
 
+    A recipe's mixture is for trainings that name nothing of what it varies.
+
     Args:
         algorithm: a name of :func:`auvgym.training.list_algorithms`.
         environment: a registered id.
@@ -120,10 +124,14 @@ def configure(
     if environment not in ENVIRONMENTS:
         raise TrainingError(unknown("environment", environment, ENVIRONMENTS))
     chosen = dict(settings or {})
+    mode = str(chosen.get("action_mode", "waypoint"))
+    recipe = load_recipe(algorithm, environment, mode)
+    varied = {key for one in recipe.get("mixture") or [] for key in one}
+    if varied.intersection(_DECIDES.get(key, key) for key in chosen):
+        del recipe["mixture"]
     if "scenario" not in chosen:
         chosen.setdefault("difficulty", DEFAULT_DIFFICULTY)
-    mode = str(chosen.get("action_mode", "waypoint"))
-    recipe = {**load_recipe(algorithm, environment, mode), **(hyperparameters or {})}
+    recipe |= hyperparameters or {}
     recipe_timesteps = recipe.pop("timesteps")
     return TrainingConfig(
         algorithm,
