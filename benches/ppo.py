@@ -14,8 +14,8 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-import rich
 import torch
+from rich.console import Console
 from rich.table import Table
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
@@ -82,7 +82,7 @@ def measure(name: str, options: argparse.Namespace, torch_threads: int) -> list[
         batch_size=1024,
         n_epochs=5,
         learning_rate=1e-3,
-        policy_kwargs={"net_arch": [128, 128], "log_std_init": -0.5},
+        policy_kwargs={"net_arch": options.layers, "log_std_init": -0.5},
         device="cpu",
         seed=0,
     )
@@ -109,6 +109,9 @@ def main() -> None:
     parser.add_argument("--env", nargs="+", default=names, help="any id (%(default)s)")
     parser.add_argument("--envs", type=int, default=128, help="at once (%(default)s)")
     parser.add_argument("--rollouts", type=int, default=6, help="of 64 steps each (%(default)s)")
+    parser.add_argument(
+        "--layers", type=int, nargs="+", default=[128, 128], help="of the networks (%(default)s)"
+    )
     parser.add_argument("--threads", type=int, default=CORES, help="of the engine (%(default)s)")
     parser.add_argument(
         "--torch-threads", type=int, nargs="+", default=[1, 2], help="of the networks (%(default)s)"
@@ -128,7 +131,7 @@ def main() -> None:
     for threads in options.torch_threads:
         for name in options.env:
             table.add_row(*measure(name, options, threads))
-    rich.print(table)
+    Console(width=120).print(table)
 
 
 if __name__ == "__main__":
