@@ -30,7 +30,7 @@ def table() -> Iterator[list[str]]:
     """Lines that are printed after the last benchmark."""
     lines: list[str] = []
     yield lines
-    print(f"\n{COUNT} environments, {THREADS} threads")
+    print(f"\n{COUNT} environments, {THREADS} threads unless said")
     print("\n".join(lines))
 
 
@@ -57,10 +57,13 @@ def measure(benchmark: Any, step: Any, name: str, table: list[str], ticks: Any =
     table.append(line)
 
 
+@pytest.mark.parametrize("threads", sorted({1, THREADS}))
 @pytest.mark.parametrize("env_id", sorted(auvgym.registration.ENVIRONMENTS))
-def test_batch_of_256(benchmark: Any, table: list[str], env_id: str) -> None:
+def test_batch_of_256(benchmark: Any, table: list[str], env_id: str, threads: int) -> None:
     """Random waypoints, with the resets that they need: each step is a whole leg."""
-    envs: Any = gymnasium.make_vec(env_id, num_envs=COUNT, autoreset_mode="SameStep")
+    envs: Any = gymnasium.make_vec(
+        env_id, num_envs=COUNT, autoreset_mode="SameStep", threads=threads
+    )
     envs.reset(seed=0)
     tick_s = envs.members[0].episode.tick_s
     random = np.random.default_rng(0)
@@ -76,7 +79,7 @@ def test_batch_of_256(benchmark: Any, table: list[str], env_id: str) -> None:
         flown[:] += now - before
         before[:] = after
 
-    measure(benchmark, step, env_id, table, lambda: flown.sum() / tick_s)
+    measure(benchmark, step, f"{env_id}, {threads} threads", table, lambda: flown.sum() / tick_s)
 
 
 @pytest.mark.parametrize("env_id", ["AUVDynamic2D-v0", "AUVDynamic3D-v0"])

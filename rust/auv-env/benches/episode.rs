@@ -15,7 +15,7 @@ fn source(family: &str) -> Source {
 }
 
 /// Random waypoints ahead; a new episode whenever one ends. One item = one environment step.
-#[divan::bench(args = ["lfhh-2d", "lfhh-3d"])]
+#[divan::bench(args = ["lfhh-2d", "lfhh-3d", "harbor"])]
 fn waypoint_steps(bencher: divan::Bencher, family: &str) {
     let source = source(family);
     let mut episode = source.episode(0).expect("a world");
@@ -61,7 +61,7 @@ fn observe(bencher: divan::Bencher, family: &str) {
     bencher.bench_local(|| episode.observe(&mut observation));
 }
 
-#[divan::bench(args = ["lfhh-2d", "lfhh-3d"])]
+#[divan::bench(args = ["lfhh-2d", "lfhh-3d", "harbor"])]
 fn reset(bencher: divan::Bencher, family: &str) {
     let source = source(family);
     let mut seed = 0;

@@ -439,6 +439,11 @@ impl Episode {
         every.is_some_and(|every| self.state.since_change_m >= every)
     }
 
+    /// The obstacles, in no order, that may be within sonar range of where the vehicle last looked.
+    pub(crate) fn within_sonar(&self) -> impl Iterator<Item = usize> {
+        self.world.within_sonar(&self.scratch)
+    }
+
     /// Writes what the vehicle sees now; `values` as long as [`observation::length`] says.
     pub fn observe(&mut self, values: &mut [f32]) {
         let frame = self.frame();

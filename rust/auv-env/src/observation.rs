@@ -1,6 +1,5 @@
 //! What an agent sees: a flat vector of 32-bit floats in named blocks, each within its stated bounds.
 
-use auv_world::World;
 use auv_world::math::{Vec3, add_scaled, norm, sub};
 use auv_world::rng::{Purpose, Stream};
 
@@ -216,7 +215,7 @@ pub(crate) fn observe(episode: &Episode, ranges: &[f64], out: &mut Writer<'_>) {
     }
     let axes = if deep { 3 } else { 2 };
     let mut sensor = Sensor::new(episode);
-    for contact in nearest(world, position, sonar_range, axes) {
+    for contact in nearest(episode, sonar_range, axes) {
         let Some(contact) = contact else {
             for _ in 0..2 * axes + 1 {
                 out.put(0.0, 0.0, 0.0);
@@ -224,35 +223,31 @@ pub(crate) fn observe(episode: &Episode, ranges: &[f64], out: &mut Writer<'_>) {
             continue;
         };
         let offset = frame.from_world(sensor.position(contact.offset, axes));
-        let obstacle = &world.scenario().obstacles[contact.index];
         let velocity = frame.from_world(sensor.velocity(world.obstacle_velocity(contact.index), axes));
         offset[..axes].iter().for_each(|v| out.put(v / sonar_range, -1.0, 1.0));
-        out.put(obstacle.extent_m() / sonar_range, 0.0, 1.0);
+        out.put(world.extents()[contact.index] / sonar_range, 0.0, 1.0);
         velocity[..axes].iter().for_each(|v| out.put(v / speed, -1.0, 1.0));
     }
 }
 
-/// The nearest obstacles whose extent reaches into sonar range, nearest first.
-fn nearest(world: &World, position: Vec3, sonar_range: f64, axes: usize) -> [Option<Contact>; NEAREST] {
+/// The nearest obstacles whose extent reaches into sonar range, nearest first, of equals the first.
+fn nearest(episode: &Episode, sonar_range: f64, axes: usize) -> [Option<Contact>; NEAREST] {
+    let (world, position) = (episode.world(), episode.state().position);
     let mut found: [Option<Contact>; NEAREST] = [None; NEAREST];
-    for (index, extent) in world.extents().iter().enumerate() {
-        let mut offset = sub(world.obstacle_position(index), position);
-        // Most are too far on the map already: nothing more need be known of them.
-        let reach = extent + sonar_range;
-        if offset[0] * offset[0] + offset[1] * offset[1] >= reach * reach {
-            continue;
-        }
+    let rank = |c: &Option<Contact>| c.map_or((f64::INFINITY, usize::MAX), |c| (c.gap, c.index));
+    for index in episode.within_sonar() {
+        let (mut offset, extent) = (sub(world.obstacle_position(index), position), world.extents()[index]);
         if axes == 2 || world.scenario().obstacles[index].is_flat() {
             offset[2] = 0.0;
         }
         let square = offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2];
+        let reach = extent + sonar_range;
         if square >= reach * reach {
             continue;
         }
         let mut contact = Some(Contact { gap: square.sqrt() - extent, offset, index });
         for slot in &mut found {
-            let gap = |c: &Option<Contact>| c.map_or(f64::INFINITY, |c| c.gap);
-            if gap(&contact) < gap(slot) {
+            if rank(&contact) < rank(slot) {
                 std::mem::swap(slot, &mut contact);
             }
         }

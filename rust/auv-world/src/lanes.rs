@@ -1,7 +1,7 @@
 //! Columns of numbers, read four at once. Only sums, products, quotients, roots and comparisons are used,
 //! which give the same bytes whatever the width of the machine's registers.
 
-use wide::f64x4;
+use wide::{f64x2, f64x4};
 
 use crate::math::{EXP_TAYLOR, LN2_HIGH, LN2_LOW, ROUNDER};
 
@@ -40,6 +40,12 @@ impl Column {
     pub fn chunks(&self) -> impl Iterator<Item = f64x4> + '_ {
         self.values.as_chunks::<LANES>().0.iter().map(|chunk| f64x4::new(*chunk))
     }
+
+    /// The chunks in halves.
+    #[inline(always)]
+    pub fn halves(&self) -> impl Iterator<Item = [f64x2; 2]> + '_ {
+        self.values.as_chunks::<LANES>().0.iter().map(|[a, b, c, d]| [f64x2::new([*a, *b]), f64x2::new([*c, *d])])
+    }
 }
 
 impl std::ops::Index<usize> for Column {
@@ -64,21 +70,28 @@ pub fn least(values: f64x4, other: f64) -> f64 {
     a.min(b).min(c.min(d)).min(other)
 }
 
-/// e^x of four numbers: bit for bit [`crate::math::exp`].
-#[inline(always)]
-pub fn exp(x: f64x4) -> f64x4 {
-    let x = x.fast_max(f64x4::splat(-708.0)).fast_min(f64x4::splat(709.0));
-    let rounder = f64x4::splat(ROUNDER);
-    let shifted = x * f64x4::splat(std::f64::consts::LOG2_E) + rounder;
-    let n = shifted - rounder;
-    let r = (x - n * f64x4::splat(LN2_HIGH)) - n * f64x4::splat(LN2_LOW);
-    let c = |i: usize| f64x4::splat(EXP_TAYLOR[i]);
-    let (r2, pair) = (r * r, |i: usize| c(i) + c(i + 1) * r);
-    let (r4, quad) = (r2 * r2, |i: usize| pair(i) + pair(i + 2) * r2);
-    let p = (quad(0) + quad(4) * r4) + (quad(8) + c(12) * r4) * (r4 * r4);
-    let scale = shifted.to_array().map(|v| f64::from_bits(v.to_bits().wrapping_add(1023) << 52));
-    p * f64x4::new(scale)
+macro_rules! exponential {
+    ($name:ident, $lanes:ty) => {
+        /// e^x of each number: bit for bit [`crate::math::exp`].
+        #[inline(always)]
+        pub fn $name(x: $lanes) -> $lanes {
+            let all = <$lanes>::splat;
+            let x = x.fast_max(all(-708.0)).fast_min(all(709.0));
+            let shifted = x * all(std::f64::consts::LOG2_E) + all(ROUNDER);
+            let n = shifted - all(ROUNDER);
+            let r = (x - n * all(LN2_HIGH)) - n * all(LN2_LOW);
+            let c = |i: usize| all(EXP_TAYLOR[i]);
+            let (r2, pair) = (r * r, |i: usize| c(i) + c(i + 1) * r);
+            let (r4, quad) = (r2 * r2, |i: usize| pair(i) + pair(i + 2) * r2);
+            let p = (quad(0) + quad(4) * r4) + (quad(8) + c(12) * r4) * (r4 * r4);
+            let scale = shifted.to_array().map(|v| f64::from_bits(v.to_bits().wrapping_add(1023) << 52));
+            p * <$lanes>::new(scale)
+        }
+    };
 }
+
+exponential!(exp, f64x4);
+exponential!(exp_pair, f64x2);
 
 #[cfg(test)]
 mod tests {
@@ -92,6 +105,10 @@ mod tests {
             for lane in 0..4 {
                 assert_eq!(together[lane].to_bits(), crate::math::exp(x[lane]).to_bits());
             }
+            let pair = exp_pair(f64x2::new([x[0], x[1]])).to_array();
+            for lane in 0..2 {
+                assert_eq!(pair[lane].to_bits(), together[lane].to_bits());
+            }
         }
     }
 
@@ -101,6 +118,8 @@ mod tests {
         (0..5).for_each(|i| column.push(f64::from(i), 9.0));
         let chunks: Vec<[f64; 4]> = column.chunks().map(f64x4::to_array).collect();
         assert_eq!(chunks, [[0.0, 1.0, 2.0, 3.0], [4.0, 9.0, 9.0, 9.0]]);
+        let halves: Vec<[f64; 2]> = column.halves().flatten().map(f64x2::to_array).collect();
+        assert_eq!(halves, [[0.0, 1.0], [2.0, 3.0], [4.0, 9.0], [9.0, 9.0]]);
         assert_eq!(least(f64x4::new([4.0, 2.0, 3.0, 9.0]), 7.0), 2.0);
     }
 }

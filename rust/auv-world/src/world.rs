@@ -5,18 +5,19 @@
 
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
-use wide::f64x4;
-
 use crate::currents::{GriddedField, VortexField, jet_velocity, scale_to_peak};
 use crate::error::WorldError;
-use crate::lanes::LANES;
 use crate::math::{Vec2, Vec3, distance, norm};
 use crate::motion::Body;
-use crate::obstacles::{Beams, Discs, Solid, Spheres, polygon::Prism};
+use crate::obstacles::{Discs, Solid, Solids, Spheres, polygon::Prism};
 use crate::rng::{Purpose, Stream};
 use crate::scenario::{Change, Current, Hold, Jet, Manoeuvre, Mission, Obstacle, Redraw, Scenario, Seabed};
 use crate::seabed::Floor;
+use serde::{Deserialize, Serialize};
+
+mod sonar;
+
+pub use sonar::Scratch;
 
 /// A map change that has happened.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -37,6 +38,8 @@ struct Fixed {
     uniform: Vec2,
     steady: bool,
     extents: Vec<f64>,
+    /// Which obstacles the spheres, discs and other solids are.
+    numbers: [Vec<u32>; 3],
     fastest_obstacle: f64,
 }
 
@@ -61,7 +64,7 @@ pub struct World {
     eddies: Vec<Body>,
     spheres: Spheres,
     discs: Discs,
-    solids: Vec<Solid>,
+    solids: Solids,
     vortices: VortexField,
 }
 
@@ -141,7 +144,7 @@ impl World {
                 }
             }
         }
-        let (mut spheres, mut discs, mut solids) = (Spheres::default(), Discs::default(), Vec::new());
+        let (mut spheres, mut discs, mut solids) = (Spheres::default(), Discs::default(), Solids::default());
         let mut slots = Vec::with_capacity(scenario.obstacles.len());
         let mut bodies = Vec::with_capacity(scenario.obstacles.len());
         for obstacle in &scenario.obstacles {
@@ -157,15 +160,15 @@ impl World {
                 }
                 Obstacle::Cylinder(shape) => {
                     solids.push(Solid::Cylinder(shape.clone()));
-                    Slot::Solid(solids.len() - 1)
+                    Slot::Solid(solids.shapes().len() - 1)
                 }
                 Obstacle::Superquadric(shape) => {
                     solids.push(Solid::Superquadric(shape.clone()));
-                    Slot::Solid(solids.len() - 1)
+                    Slot::Solid(solids.shapes().len() - 1)
                 }
                 Obstacle::Polygon(shape) => {
                     solids.push(Solid::Polygon(Prism::new(shape)));
-                    Slot::Solid(solids.len() - 1)
+                    Slot::Solid(solids.shapes().len() - 1)
                 }
             });
         }
@@ -174,11 +177,21 @@ impl World {
             && jets.iter().all(|jet| jet.time_scale_s.is_none())
             && bodies.iter().chain(&eddies).all(|body| body.velocity == [0.0; 3])
             && scenario.obstacles.iter().all(|obstacle| obstacle.manoeuvre().is_none());
+        let mut numbers: [Vec<u32>; 3] = Default::default();
+        for (number, slot) in slots.iter().enumerate() {
+            let kind = match slot {
+                Slot::Sphere(_) => 0,
+                Slot::Disc(_) => 1,
+                Slot::Solid(_) => 2,
+            };
+            numbers[kind].push(number as u32);
+        }
         let extents = scenario.obstacles.iter().map(Obstacle::extent_m).collect();
         let fastest_obstacle = bodies.iter().map(|body| norm(body.velocity)).fold(0.0, f64::max);
         let manoeuvres = scenario.obstacles.iter().filter_map(Obstacle::manoeuvre);
         let fastest_obstacle = manoeuvres.map(Manoeuvre::fastest_mps).fold(fastest_obstacle, f64::max);
-        let fixed = Arc::new(Fixed { scenario, floor, gridded, jets, uniform, steady, extents, fastest_obstacle });
+        let fixed =
+            Arc::new(Fixed { scenario, floor, gridded, jets, uniform, steady, extents, numbers, fastest_obstacle });
         Self {
             fixed,
             seed: 0,
@@ -259,12 +272,12 @@ impl World {
 
     /// Cylinders, superquadrics and polygons at the present time.
     pub fn solids(&self) -> &[Solid] {
-        &self.solids
+        self.solids.shapes()
     }
 
     /// Whether there are obstacles other than spheres and discs.
     pub fn has_other_solids(&self) -> bool {
-        !self.solids.is_empty()
+        !self.solids.shapes().is_empty()
     }
 
     /// Vortices at the present time.
@@ -327,7 +340,7 @@ impl World {
             match self.slots[i] {
                 Slot::Sphere(slot) => self.spheres.place(slot, position),
                 Slot::Disc(slot) => self.discs.place(slot, [position[0], position[1]]),
-                Slot::Solid(slot) => self.solids[slot].place(position),
+                Slot::Solid(slot) => self.solids.place(slot, position),
             }
         }
         self.spheres.arrange();
@@ -357,53 +370,13 @@ impl World {
     /// obstacles and sea floor, exact for spheres and discs, never too large for the others.
     #[inline]
     pub fn clearance(&self, point: Vec3) -> f64 {
-        let mut nearest = self.spheres.clearance(point).min(self.discs.clearance(point));
-        for solid in &self.solids {
-            nearest = nearest.min(solid.clearance(point));
-        }
-        self.fixed.floor.clearance(point, nearest)
+        let round = self.spheres.clearance(point).min(self.discs.clearance(point));
+        self.fixed.floor.clearance(point, self.solids.clearance(point, round))
     }
 
     /// Depth of the sea floor (m) at (x, y); infinite where there is none.
     pub fn floor_depth(&self, x: f64, y: f64) -> f64 {
         self.fixed.floor.depth(x, y)
-    }
-
-    /// How far sonar beams of unit `directions` run from `origin` before they meet a solid, a wall of
-    /// the box or the surface (m), at most `longest`. `scratch` keeps its memory between calls.
-    pub fn sonar(&self, origin: Vec3, directions: &[Vec3], longest: f64, scratch: &mut Scratch, ranges: &mut [f64]) {
-        for list in [&mut scratch.spheres, &mut scratch.discs, &mut scratch.floor] {
-            list.clear();
-        }
-        self.spheres.near(origin, longest, &mut scratch.spheres);
-        self.discs.near(origin, longest, &mut scratch.discs);
-        self.fixed.floor.near(origin, longest, &mut scratch.floor);
-        for (directions, ranges) in directions.chunks(LANES).zip(ranges.chunks_mut(LANES)) {
-            let beams: Beams = std::array::from_fn(|axis| {
-                f64x4::new(std::array::from_fn(|lane| directions[lane.min(directions.len() - 1)][axis]))
-            });
-            let mut free = self.wall_range(origin, &beams, f64x4::splat(longest));
-            free = self.spheres.range(origin, &beams, free, &scratch.spheres);
-            free = self.discs.range(origin, &beams, free, &scratch.discs);
-            free = self.fixed.floor.range(origin, &beams, free, &scratch.floor);
-            for ((direction, range), free) in directions.iter().zip(ranges).zip(free.to_array()) {
-                *range = self.solids.iter().fold(free, |free, solid| solid.range(origin, *direction, free));
-            }
-        }
-    }
-
-    /// The lesser of `nearest` and how far beams run before they meet a wall of the box or the surface (m).
-    fn wall_range(&self, origin: Vec3, beams: &Beams, nearest: f64x4) -> f64x4 {
-        let domain = &self.fixed.scenario.domain;
-        let axes = if self.fixed.scenario.dimensions == 2 { 2 } else { 3 };
-        (0..axes).fold(nearest, |nearest, axis| {
-            let ahead = f64x4::splat((domain.max_m[axis] - origin[axis]).max(0.0));
-            let behind = f64x4::splat((origin[axis] - domain.min_m[axis]).max(0.0));
-            let rate = beams[axis];
-            let gap = rate.simd_gt(f64x4::ZERO).select(ahead, behind);
-            let still = rate.simd_eq(f64x4::ZERO);
-            still.select(nearest, nearest.fast_min(gap / still.select(f64x4::ONE, rate.abs())))
-        })
     }
 
     /// Whether another map change will change anything.
@@ -487,12 +460,4 @@ impl World {
             }
         }
     }
-}
-
-/// Memory that a sonar scan reuses.
-#[derive(Debug, Clone, Default)]
-pub struct Scratch {
-    spheres: Vec<u32>,
-    discs: Vec<u32>,
-    floor: Vec<u32>,
 }

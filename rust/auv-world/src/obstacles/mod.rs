@@ -3,13 +3,16 @@
 //! Spheres and discs, which the section worlds have by the dozen, are kept as structures of arrays;
 //! the other shapes one by one.
 
+mod outline;
 pub mod polygon;
 mod round;
+mod solids;
 mod superquadric;
 
-pub use round::{Beams, Discs, Spheres};
+pub use round::{BeamColumns, Beams, Discs, Echo, Spheres};
+pub use solids::Solids;
 
-use crate::math::{Vec3, add_scaled};
+use crate::math::{Vec2, Vec3, add_scaled};
 use crate::scenario::{Cylinder, Manoeuvre, Obstacle, Superquadric};
 
 /// A shape that is neither sphere nor disc, at its present place.
@@ -42,6 +45,19 @@ impl Solid {
             }
             Self::Superquadric(shape) => superquadric::clearance(shape, point),
             Self::Polygon(prism) => prism.clearance(point),
+        }
+    }
+
+    /// The corners of a box on the map (m) beyond which its clearance is no less than the distance to the box. A
+    /// superquadric's clearance is less than its distance, so that no box tells anything.
+    fn bounds(&self) -> (Vec2, Vec2) {
+        match self {
+            Self::Cylinder(shape) => {
+                let reach = shape.radius_m * (1.0 + 1e-9);
+                (shape.position_m.map(|v| v - reach), shape.position_m.map(|v| v + reach))
+            }
+            Self::Superquadric(_) => ([f64::NEG_INFINITY; 2], [f64::INFINITY; 2]),
+            Self::Polygon(prism) => prism.bounds(),
         }
     }
 

@@ -1,13 +1,16 @@
 //! Simple polygons, extruded between two depths: exact signed distance.
 
+use wide::f64x4;
+
+use super::outline::Outline;
 use crate::math::{Vec2, Vec3};
 use crate::scenario::Polygon;
 
 /// A polygon's prism at its present place.
 #[derive(Debug, Clone)]
 pub struct Prism {
-    /// Corners relative to the centre (m).
-    corners: Vec<Vec2>,
+    /// Relative to the centre (m).
+    outline: Outline,
     centre: Vec2,
     top: f64,
     bottom: f64,
@@ -24,8 +27,8 @@ impl Prism {
     /// The prism where the scenario has it.
     pub fn new(shape: &Polygon) -> Self {
         let centre = centre(&shape.vertices_m);
-        let corners = shape.vertices_m.iter().map(|v| [v[0] - centre[0], v[1] - centre[1]]).collect();
-        Self { corners, centre, top: shape.top_m, bottom: shape.bottom_m }
+        let corners: Vec<Vec2> = shape.vertices_m.iter().map(|v| [v[0] - centre[0], v[1] - centre[1]]).collect();
+        Self { outline: Outline::new(&corners), centre, top: shape.top_m, bottom: shape.bottom_m }
     }
 
     /// Moves its centre.
@@ -35,35 +38,41 @@ impl Prism {
 
     /// Corners at the present place (m).
     pub fn vertices(&self) -> impl Iterator<Item = Vec2> + '_ {
-        self.corners.iter().map(|c| [c[0] + self.centre[0], c[1] + self.centre[1]])
+        self.outline.corners().map(|c| [c[0] + self.centre[0], c[1] + self.centre[1]])
     }
 
     /// Signed distance (m).
     pub fn clearance(&self, point: Vec3) -> f64 {
-        let p = [point[0] - self.centre[0], point[1] - self.centre[1]];
-        super::prism_distance(outline_distance(&self.corners, p), self.top, self.bottom, point[2])
+        super::prism_distance(self.outline.distance(self.relative(point)), self.top, self.bottom, point[2])
     }
-}
 
-/// Signed distance to a polygon's outline (m), negative inside.
-fn outline_distance(corners: &[Vec2], p: Vec2) -> f64 {
-    let mut nearest2 = f64::INFINITY;
-    let mut inside = false;
-    let mut from = corners[corners.len() - 1];
-    for &to in corners {
-        let edge = [to[0] - from[0], to[1] - from[1]];
-        let offset = [p[0] - from[0], p[1] - from[1]];
-        let along =
-            ((offset[0] * edge[0] + offset[1] * edge[1]) / (edge[0] * edge[0] + edge[1] * edge[1])).clamp(0.0, 1.0);
-        let gap = [offset[0] - along * edge[0], offset[1] - along * edge[1]];
-        nearest2 = nearest2.min(gap[0] * gap[0] + gap[1] * gap[1]);
-        // Crossing rule: edges that a ray to +x crosses.
-        if (from[1] > p[1]) != (to[1] > p[1]) && p[0] < from[0] + edge[0] * (p[1] - from[1]) / edge[1] {
-            inside = !inside;
-        }
-        from = to;
+    /// The corners of a box on the map that holds it with a little room (m).
+    pub(super) fn bounds(&self) -> (Vec2, Vec2) {
+        let (low, high) = self.outline.bounds();
+        let moved = |v: Vec2| [v[0] + self.centre[0], v[1] + self.centre[1]];
+        (moved(low), moved(high))
     }
-    if inside { -nearest2.sqrt() } else { nearest2.sqrt() }
+
+    /// Whether it reaches from above to below `depth`, so that only the outline counts there.
+    pub(super) fn reaches_through(&self, depth: f64) -> bool {
+        self.top <= depth && depth <= self.bottom
+    }
+
+    /// [`Outline::may_stop`] where it is now.
+    #[inline]
+    pub(super) fn may_stop(&self, origin: Vec3, directions: &[f64x4; 2], longest: f64x4) -> u32 {
+        self.outline.may_stop(self.relative(origin), directions, longest)
+    }
+
+    /// [`Outline::march`] where it is now.
+    #[inline]
+    pub(super) fn march(&self, origin: Vec3, directions: &[f64x4; 2], longest: f64x4) -> f64x4 {
+        self.outline.march(self.centre, [origin[0], origin[1]], directions, longest)
+    }
+
+    fn relative(&self, point: Vec3) -> Vec2 {
+        [point[0] - self.centre[0], point[1] - self.centre[1]]
+    }
 }
 
 fn turn(a: Vec2, b: Vec2, c: Vec2) -> f64 {

@@ -41,6 +41,32 @@ pub struct Discs {
     radius: Column,
 }
 
+/// A ball or disc within reach of a sonar.
+#[derive(Debug, Clone, Copy)]
+pub struct Echo {
+    /// Which one.
+    pub index: u32,
+    /// Its centre from the sonar (m).
+    offset: Vec3,
+    /// Squared offset less the squared radius (m^2).
+    outside: f64,
+}
+
+/// Keeps those of four whose bits in `near` are set.
+#[inline(always)]
+fn keep(near: u32, index: impl Fn(usize) -> u32, offset: [f64x4; 3], outside: f64x4, echoes: &mut Vec<Echo>) {
+    if near == 0 {
+        return;
+    }
+    let (offset, outside) = (offset.map(f64x4::to_array), outside.to_array());
+    for lane in (0..LANES).filter(|lane| near >> lane & 1 == 1) {
+        echoes.push(Echo { index: index(lane), offset: offset.map(|axis| axis[lane]), outside: outside[lane] });
+    }
+}
+
+/// More than what rounds where slabs end, as a part of the numbers that do.
+const SLACK: f64 = 1e-9;
+
 /// So many slabs on either side of a point are looked at in any case.
 const AROUND: usize = 2;
 
@@ -57,6 +83,8 @@ fn nearer(distance2: f64x4, radius: f64x4, nearest: f64) -> f64 {
 
 /// Four unit directions of sonar beams.
 pub type Beams = [f64x4; 3];
+/// The same where they are kept.
+pub type BeamColumns = [[f64; LANES]; 3];
 
 /// The lesser of `nearest` and how far four beams run before they meet a ball: `along` is the centre's
 /// offset along each beam, `outside` its squared offset less the squared radius, `square` the squared
@@ -147,10 +175,8 @@ impl Spheres {
             let (dx, dy, dz) = (x - slab.x, y - slab.y, z - slab.z);
             dx * dx + dy * dy + dz * dz
         };
-        // Where to begin decides only how soon the rest can be passed over: a guess. Its neighbours are
-        // looked at without branches, which random points would mispredict.
-        let along = (point[1] - self.first) * self.slabs_per_metre;
-        let middle = (along.max(0.0) as usize).min(self.slabs.len());
+        // The neighbours are looked at without branches, which random points would mispredict.
+        let middle = self.middle(point[1]);
         let (first, last) = (middle.saturating_sub(AROUND), (middle + AROUND).min(self.slabs.len()));
         let around = self.slabs[first..last]
             .iter()
@@ -171,26 +197,41 @@ impl Spheres {
         nearest
     }
 
+    /// The slab where y should be. Where to begin decides only how soon the rest can be passed over: a guess.
+    #[inline]
+    fn middle(&self, y: f64) -> usize {
+        let along = (y - self.first) * self.slabs_per_metre;
+        (along.max(0.0) as usize).min(self.slabs.len())
+    }
+
     /// Appends the balls nearer than `longest`.
-    pub fn near(&self, origin: Vec3, longest: f64, candidates: &mut Vec<u32>) {
-        for i in 0..self.x.len() {
-            let reach = longest + self.radius[i];
-            let c = [self.x[i] - origin[0], self.y[i] - origin[1], self.z[i] - origin[2]];
-            if c[0] * c[0] + c[1] * c[1] + c[2] * c[2] < reach * reach {
-                candidates.push(i as u32);
-            }
+    pub fn near(&self, origin: Vec3, longest: f64, echoes: &mut Vec<Echo>) {
+        let at = origin.map(f64x4::splat);
+        let mut look = |i: usize, slab: &Slab| {
+            let offset = [slab.x - at[0], slab.y - at[1], slab.z - at[2]];
+            let square = offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2];
+            let reach = f64x4::splat(longest) + slab.radius;
+            let near = square.simd_lt(reach * reach).to_bitmask();
+            keep(near, |lane| self.order[i * LANES + lane], offset, square - slab.radius * slab.radius, echoes);
+        };
+        let (y, middle) = (origin[1], self.middle(origin[1]));
+        let beyond = longest + SLACK * (longest + y.abs());
+        for (i, slab) in self.slabs.iter().enumerate().skip(middle).take_while(|(_, slab)| slab.low - y <= beyond) {
+            look(i, slab);
+        }
+        let before = self.slabs[..middle].iter().enumerate().rev();
+        for (i, slab) in before.take_while(|(_, slab)| y - slab.high <= beyond) {
+            look(i, slab);
         }
     }
 
-    /// The lesser of `nearest` and how far beams run before they meet one of `candidates` (m).
+    /// The lesser of `nearest` and how far beams run before they meet one of `echoes` (m).
     #[inline]
-    pub fn range(&self, origin: Vec3, beams: &Beams, nearest: f64x4, candidates: &[u32]) -> f64x4 {
-        candidates.iter().fold(nearest, |nearest, &i| {
-            let i = i as usize;
-            let c = [self.x[i] - origin[0], self.y[i] - origin[1], self.z[i] - origin[2]];
-            let along = beams[0] * f64x4::splat(c[0]) + beams[1] * f64x4::splat(c[1]) + beams[2] * f64x4::splat(c[2]);
-            let outside = c[0] * c[0] + c[1] * c[1] + c[2] * c[2] - self.radius[i] * self.radius[i];
-            chord(along, outside, f64x4::ONE, nearest)
+    pub fn range(beams: &Beams, nearest: f64x4, echoes: &[Echo]) -> f64x4 {
+        echoes.iter().fold(nearest, |nearest, echo| {
+            let c = echo.offset.map(f64x4::splat);
+            let along = beams[0] * c[0] + beams[1] * c[1] + beams[2] * c[2];
+            chord(along, echo.outside, f64x4::ONE, nearest)
         })
     }
 }
@@ -236,26 +277,26 @@ impl Discs {
     }
 
     /// Appends the discs nearer than `longest`.
-    pub fn near(&self, origin: Vec3, longest: f64, candidates: &mut Vec<u32>) {
-        for i in 0..self.x.len() {
-            let reach = longest + self.radius[i];
-            let c = [self.x[i] - origin[0], self.y[i] - origin[1]];
-            if c[0] * c[0] + c[1] * c[1] < reach * reach {
-                candidates.push(i as u32);
-            }
+    pub fn near(&self, origin: Vec3, longest: f64, echoes: &mut Vec<Echo>) {
+        let (x, y) = (f64x4::splat(origin[0]), f64x4::splat(origin[1]));
+        let columns = self.x.chunks().zip(self.y.chunks()).zip(self.radius.chunks());
+        for (chunk, ((cx, cy), radius)) in columns.enumerate() {
+            let offset = [cx - x, cy - y, f64x4::ZERO];
+            let square = offset[0] * offset[0] + offset[1] * offset[1];
+            let reach = f64x4::splat(longest) + radius;
+            let near = square.simd_lt(reach * reach).to_bitmask();
+            keep(near, |lane| (chunk * LANES + lane) as u32, offset, square - radius * radius, echoes);
         }
     }
 
-    /// The lesser of `nearest` and how far beams run before they meet one of `candidates` (m). Beams
-    /// straight up or down meet only a disc that they start in.
+    /// The lesser of `nearest` and how far beams run before they meet one of `echoes` (m). Beams straight up or
+    /// down meet only a disc that they start in.
     #[inline]
-    pub fn range(&self, origin: Vec3, beams: &Beams, nearest: f64x4, candidates: &[u32]) -> f64x4 {
+    pub fn range(beams: &Beams, nearest: f64x4, echoes: &[Echo]) -> f64x4 {
         let square = (beams[0] * beams[0] + beams[1] * beams[1]).fast_max(f64x4::splat(1e-300));
-        candidates.iter().fold(nearest, |nearest, &i| {
-            let i = i as usize;
-            let c = [self.x[i] - origin[0], self.y[i] - origin[1]];
-            let along = beams[0] * f64x4::splat(c[0]) + beams[1] * f64x4::splat(c[1]);
-            chord(along, c[0] * c[0] + c[1] * c[1] - self.radius[i] * self.radius[i], square, nearest)
+        echoes.iter().fold(nearest, |nearest, echo| {
+            let along = beams[0] * f64x4::splat(echo.offset[0]) + beams[1] * f64x4::splat(echo.offset[1]);
+            chord(along, echo.outside, square, nearest)
         })
     }
 }
@@ -265,8 +306,6 @@ mod tests {
     use super::*;
     use crate::math::add_scaled;
     use proptest::prelude::*;
-
-    const ALL: [u32; 7] = [0, 1, 2, 3, 4, 5, 6];
 
     proptest! {
         #[test]
@@ -286,8 +325,12 @@ mod tests {
             let d = [d[0] / length, d[1] / length, d[2] / length];
             let beams = d.map(f64x4::splat);
             let endless = f64x4::splat(f64::INFINITY);
-            let range = spheres.range(p, &beams, endless, &ALL).to_array()[0];
-            let flat = discs.range(p, &beams, endless, &ALL).to_array()[3];
+            let (mut balls, mut circles) = (Vec::new(), Vec::new());
+            spheres.near(p, 1e6, &mut balls);
+            discs.near(p, 1e6, &mut circles);
+            prop_assert_eq!((balls.len(), circles.len()), (7, 7));
+            let range = Spheres::range(&beams, endless, &balls).to_array()[0];
+            let flat = Discs::range(&beams, endless, &circles).to_array()[3];
             for (clearance, range) in [(spheres.clearance(p), range), (discs.clearance(p), flat)] {
                 prop_assert!(range >= clearance.max(0.0) - 1e-6);
                 if clearance <= 0.0 { prop_assert_eq!(range, 0.0); }
@@ -295,7 +338,19 @@ mod tests {
             let mut near = Vec::new();
             spheres.near(p, 5000.0, &mut near);
             let limit = f64x4::splat(5000.0);
-            prop_assert_eq!(range.min(5000.0), spheres.range(p, &beams, limit, &near).to_array()[1]);
+            prop_assert_eq!(range.min(5000.0), Spheres::range(&beams, limit, &near).to_array()[1]);
+            for (found, flat) in [(&near, false), (&circles, true)] {
+                let mut found: Vec<u32> = found.iter().map(|echo| echo.index).collect();
+                found.sort_unstable();
+                let close = |i: &u32| {
+                    let (([x, y], r), z) = if flat { (discs.get(*i as usize), p[2]) } else {
+                        let ([x, y, z], r) = spheres.get(*i as usize);
+                        (([x, y], r), z)
+                    };
+                    crate::math::distance(p, [x, y, z]) < r + if flat { 1e6 } else { 5000.0 }
+                };
+                prop_assert_eq!(found, (0..7).filter(close).collect::<Vec<u32>>());
+            }
             if range.is_finite() && range > 0.0 {
                 prop_assert!(spheres.clearance(add_scaled(p, range, d)).abs() < 1e-6);
             }

@@ -6,10 +6,9 @@ mod peaks;
 pub use gridded::GridFloor;
 pub use peaks::PeakFloor;
 
-use wide::f64x4;
-
+use crate::lanes::LANES;
 use crate::math::Vec3;
-use crate::obstacles::Beams;
+use crate::obstacles::BeamColumns;
 
 /// The sea floor of a world.
 #[derive(Debug, Clone)]
@@ -54,23 +53,21 @@ impl Floor {
         }
     }
 
-    /// The lesser of `nearest` and how far four beams run before they meet the floor (m); `candidates` as
-    /// from [`Floor::near`].
-    pub fn range(&self, origin: Vec3, beams: &Beams, nearest: f64x4, candidates: &[u32]) -> f64x4 {
+    /// Shortens `ranges` to how far beams run before they meet the floor (m); `candidates` as from [`Floor::near`].
+    pub fn range(&self, origin: Vec3, beams: &[BeamColumns], candidates: &[u32], ranges: &mut [[f64; LANES]]) {
+        let each = |ranges: &mut [[f64; LANES]], range: &dyn Fn(Vec3, f64) -> f64| {
+            for (beams, ranges) in beams.iter().zip(ranges) {
+                *ranges = std::array::from_fn(|lane| range(beams.map(|axis| axis[lane]), ranges[lane]));
+            }
+        };
         match self {
-            Self::None => nearest,
+            Self::None => {}
             Self::Flat(depth) => {
-                let dives = beams[2].simd_gt(f64x4::ZERO);
-                let plane = f64x4::splat((depth - origin[2]).max(0.0)) / dives.select(beams[2], f64x4::ONE);
-                dives.select(plane.fast_min(nearest), nearest)
+                let above = (depth - origin[2]).max(0.0);
+                each(ranges, &|beam, range| if beam[2] > 0.0 { range.min(above / beam[2]) } else { range });
             }
-            Self::Peaks(peaks) => peaks.range(origin, beams, nearest, candidates),
-            Self::Gridded(grid) => {
-                let (directions, nearest) = (beams.map(f64x4::to_array), nearest.to_array());
-                f64x4::new(std::array::from_fn(|lane| {
-                    grid.range(origin, directions.map(|axis| axis[lane]), nearest[lane])
-                }))
-            }
+            Self::Peaks(peaks) => peaks.range(origin, beams, candidates, ranges),
+            Self::Gridded(grid) => each(ranges, &|beam, range| grid.range(origin, beam, range)),
         }
     }
 }

@@ -7,9 +7,9 @@
 
 use wide::f64x4;
 
-use crate::lanes::{Column, exp as exp4, least};
+use crate::lanes::{Column, LANES, exp as exp4, least};
 use crate::math::{Vec3, exp};
-use crate::obstacles::{Beams, STEPS, TOUCH};
+use crate::obstacles::{BeamColumns, Beams, STEPS, TOUCH};
 use crate::scenario::{Peak, Peaks};
 
 /// At most exp(u^2 / 2), without an exponential: the start of its series, and 1 for u < 0.
@@ -122,54 +122,101 @@ impl PeakFloor {
 
     /// Appends the peaks that a beam of at most `longest` metres from `origin` can meet.
     pub fn near(&self, origin: Vec3, longest: f64, candidates: &mut Vec<u32>) {
-        let lowest = self.floor_depth - origin[2] - longest;
-        for i in 0..self.x.len() {
-            let closest = self.u2(i, origin[0], origin[1]).sqrt() - self.steepness[i] * longest;
-            if self.height[i] * exp(-0.5 * closest.max(0.0) * closest.max(0.0)) > lowest {
-                candidates.push(i as u32);
-            }
-        }
-    }
-
-    /// The lesser of `nearest` and how far four beams run before they meet the flat floor or one of the
-    /// peaks `candidates` (m).
-    pub fn range(&self, origin: Vec3, beams: &Beams, nearest: f64x4, candidates: &[u32]) -> f64x4 {
-        let above = f64x4::splat(self.floor_depth - origin[2]);
-        let dives = beams[2].simd_gt(f64x4::ZERO);
-        let plane = above.fast_max(f64x4::ZERO) / dives.select(beams[2], f64x4::ONE);
-        let mut range = dives.select(plane.fast_min(nearest), nearest);
-        for &i in candidates {
-            let i = i as usize;
-            // u^2 along a beam is a parabola, q0 + 2 q1 t + q2 t^2: where it is least the peak is highest.
-            let (dx, dy) = (origin[0] - self.x[i], origin[1] - self.y[i]);
-            let (ax, ay) = (self.along_x[i], self.along_y[i]);
-            let q0 = f64x4::splat(ax * dx * dx + ay * dy * dy);
-            let q1 = beams[0] * f64x4::splat(ax * dx) + beams[1] * f64x4::splat(ay * dy);
-            let q2 = beams[0] * beams[0] * f64x4::splat(ax) + beams[1] * beams[1] * f64x4::splat(ay);
-            let closest = (-q1 / q2.fast_max(f64x4::splat(1e-30))).fast_max(f64x4::ZERO).fast_min(range);
-            let least = (q0 + closest * (q1 + q1 + q2 * closest)).fast_max(f64x4::ZERO);
-            let lowest = above.fast_min(above - range * beams[2]);
-            // Most beams pass far too high for an exponential; by more than its rounding.
-            let passes = (lowest * series(f64x4::HALF * least)).simd_ge(f64x4::splat(self.height[i] * (1.0 + 1e-9)));
-            if passes.all() {
+        let lowest = f64x4::splat(self.floor_depth - origin[2] - longest);
+        let (x, y) = (f64x4::splat(origin[0]), f64x4::splat(origin[1]));
+        let shapes = self.along_x.chunks().zip(self.along_y.chunks()).zip(self.steepness.chunks());
+        let peaks = self.x.chunks().zip(self.y.chunks()).zip(self.height.chunks()).zip(shapes);
+        for (chunk, (((px, py), height), ((ax, ay), steepness))) in peaks.enumerate() {
+            let (dx, dy) = (x - px, y - py);
+            let u = (ax * dx * dx + ay * dy * dy).sqrt();
+            let closest = (u - steepness * f64x4::splat(longest)).fast_max(f64x4::ZERO);
+            // Most are too far away for an exponential; by more than its rounding.
+            let least = lowest * series(f64x4::HALF * closest * closest);
+            if least.simd_ge(height * f64x4::splat(1.0 + 1e-9)).all() {
                 continue;
             }
-            let rises = (f64x4::splat(self.height[i]) * exp4(f64x4::splat(-0.5) * least)).simd_gt(lowest);
-            if rises.any() {
-                range = self.march(i, origin, beams, range, rises);
-            }
+            let near = (height * exp4(f64x4::splat(-0.5) * closest * closest)).simd_gt(lowest).to_bitmask();
+            let first = chunk * LANES;
+            let lanes = (first..self.x.len()).take(LANES).filter(|i| near >> (i - first) & 1 == 1);
+            candidates.extend(lanes.map(|i| i as u32));
         }
-        range
     }
 
-    /// Walks along those of four beams that `going` says until each touches peak `i` or has run its
-    /// `longest`, all at once: each as [`crate::obstacles::march`] would alone.
-    fn march(&self, i: usize, origin: Vec3, beams: &Beams, longest: f64x4, mut going: f64x4) -> f64x4 {
+    /// Shortens `ranges` to how far beams run before they meet the flat floor or one of the peaks `candidates` (m).
+    pub fn range(&self, origin: Vec3, beams: &[BeamColumns], candidates: &[u32], ranges: &mut [[f64; LANES]]) {
+        let above = f64x4::splat(self.floor_depth - origin[2]);
+        for (beams, range) in beams.iter().zip(&mut *ranges) {
+            let (down, nearest) = (f64x4::new(beams[2]), f64x4::new(*range));
+            let dives = down.simd_gt(f64x4::ZERO);
+            let plane = above.fast_max(f64x4::ZERO) / dives.select(down, f64x4::ONE);
+            *range = dives.select(plane.fast_min(nearest), nearest).to_array();
+        }
+        for &i in candidates {
+            let i = i as usize;
+            // Beams that meet a peak stand apart: they wait until there are four to walk along.
+            let (mut waiting, mut count) = ([0; LANES], 0);
+            for chunk in 0..beams.len() {
+                let mut rises = self.rises(i, origin, &beams[chunk].map(f64x4::new), f64x4::new(ranges[chunk]));
+                while rises != 0 {
+                    waiting[count] = chunk * LANES + rises.trailing_zeros() as usize;
+                    rises &= rises - 1;
+                    count += 1;
+                    if count == LANES {
+                        self.walk(i, origin, beams, &waiting, ranges);
+                        count = 0;
+                    }
+                }
+            }
+            if count > 0 {
+                self.walk(i, origin, beams, &waiting[..count], ranges);
+            }
+        }
+    }
+
+    /// Which of four beams peak `i` might rise to within their `range`: a bit for each.
+    #[inline]
+    fn rises(&self, i: usize, origin: Vec3, beams: &Beams, range: f64x4) -> u32 {
+        // u^2 along a beam is a parabola, q0 + 2 q1 t + q2 t^2: where it is least the peak is highest.
+        let above = f64x4::splat(self.floor_depth - origin[2]);
+        let (dx, dy) = (origin[0] - self.x[i], origin[1] - self.y[i]);
+        let (ax, ay) = (self.along_x[i], self.along_y[i]);
+        let q0 = f64x4::splat(ax * dx * dx + ay * dy * dy);
+        let q1 = beams[0] * f64x4::splat(ax * dx) + beams[1] * f64x4::splat(ay * dy);
+        let q2 = beams[0] * beams[0] * f64x4::splat(ax) + beams[1] * beams[1] * f64x4::splat(ay);
+        let closest = (-q1 / q2.fast_max(f64x4::splat(1e-30))).fast_max(f64x4::ZERO).fast_min(range);
+        let least = (q0 + closest * (q1 + q1 + q2 * closest)).fast_max(f64x4::ZERO);
+        let lowest = above.fast_min(above - range * beams[2]);
+        // Most beams pass far too high for an exponential; by more than its rounding.
+        let passes = (lowest * series(f64x4::HALF * least)).simd_ge(f64x4::splat(self.height[i] * (1.0 + 1e-9)));
+        if passes.all() {
+            return 0;
+        }
+        (f64x4::splat(self.height[i]) * exp4(f64x4::splat(-0.5) * least)).simd_gt(lowest).to_bitmask()
+    }
+
+    /// Walks along one to four beams, by their numbers, towards peak `i`.
+    fn walk(&self, i: usize, origin: Vec3, beams: &[BeamColumns], numbers: &[usize], ranges: &mut [[f64; LANES]]) {
+        let place = |lane: usize| {
+            let number = numbers[lane.min(numbers.len() - 1)];
+            (number / LANES, number % LANES)
+        };
+        let lanes = |value: &dyn Fn((usize, usize)) -> f64| f64x4::new(std::array::from_fn(|lane| value(place(lane))));
+        let four: Beams = std::array::from_fn(|axis| lanes(&|(chunk, lane)| beams[chunk][axis][lane]));
+        let found = self.march(i, origin, &four, lanes(&|(chunk, lane)| ranges[chunk][lane])).to_array();
+        for (&number, range) in numbers.iter().zip(found) {
+            ranges[number / LANES][number % LANES] = range;
+        }
+    }
+
+    /// Walks along four beams until each touches peak `i` or has run its `longest`, all at once: each as
+    /// [`crate::obstacles::march`] would alone.
+    fn march(&self, i: usize, origin: Vec3, beams: &Beams, longest: f64x4) -> f64x4 {
         let touch = f64x4::splat(TOUCH) * longest;
         let [x, y, height, steepness] = [self.x[i], self.y[i], self.height[i], self.steepness[i]].map(f64x4::splat);
         let (ax, ay) = (f64x4::splat(self.along_x[i]), f64x4::splat(self.along_y[i]));
         let (floor, at) = (f64x4::splat(self.floor_depth), origin.map(f64x4::splat));
-        let mut range = going.select(f64x4::ZERO, longest);
+        let mut range = f64x4::ZERO;
+        let mut going = range.simd_eq(f64x4::ZERO);
         for _ in 0..STEPS {
             let [px, py, pz]: Beams = std::array::from_fn(|axis| at[axis] + range * beams[axis]);
             let (dx, dy) = (px - x, py - y);
@@ -263,14 +310,12 @@ mod tests {
             p in (0.0..10e3_f64, 0.0..12e3_f64, 0.0..20e3_f64),
             d in prop::array::uniform4(prop::array::uniform3(-1.0..1.0_f64)),
             longest in prop::array::uniform4(1.0..6e3_f64),
-            going in 0..16_u32,
         ) {
             let (floor, origin) = (floor(), [p.0, p.1, p.2]);
             let directions = d.map(|d| d.map(|v| v / crate::math::norm(d).max(1e-9)));
             let beams: Beams = std::array::from_fn(|axis| f64x4::new(directions.map(|d| d[axis])));
-            let chosen = f64x4::new(std::array::from_fn(|lane| f64::from(going >> lane & 1))).simd_gt(f64x4::ZERO);
             for i in 0..3 {
-                let together = floor.march(i, origin, &beams, f64x4::new(longest), chosen).to_array();
+                let together = floor.march(i, origin, &beams, f64x4::new(longest)).to_array();
                 for lane in 0..4 {
                     let alone = crate::obstacles::march(origin, directions[lane], longest[lane], |point| {
                         let u = floor.u2(i, point[0], point[1]).sqrt();
@@ -278,8 +323,7 @@ mod tests {
                         let above = f64x4::splat(floor.floor_depth - point[2]);
                         distance_bound(height, steepness, u, above, f64::INFINITY).to_array()[0]
                     });
-                    let expected = if going >> lane & 1 == 1 { alone } else { longest[lane] };
-                    prop_assert_eq!(together[lane].to_bits(), expected.to_bits());
+                    prop_assert_eq!(together[lane].to_bits(), alone.to_bits());
                 }
             }
         }
@@ -294,10 +338,19 @@ mod tests {
             let direction = [d[0] / length, d[1] / length, d[2] / length];
             let mut near = Vec::new();
             floor.near(origin, 5000.0, &mut near);
-            let (beams, longest) = (direction.map(f64x4::splat), f64x4::splat(5000.0));
-            let ranges = floor.range(origin, &beams, longest, &near);
-            prop_assert_eq!(ranges.to_array(), floor.range(origin, &beams, longest, &[0, 1, 2]).to_array());
-            let range = ranges.to_array()[0];
+            // Two chunks of beams, so that those that wait come from both.
+            let other = [direction[1], -direction[0], direction[2]];
+            let beams = [direction, other].map(|d| d.map(|v| [v; LANES]));
+            let [mut ranges, mut all] = [[[5000.0; LANES]; 2]; 2];
+            floor.range(origin, &beams, &near, &mut ranges);
+            floor.range(origin, &beams, &[0, 1, 2], &mut all);
+            prop_assert_eq!(ranges, all);
+            for (chunk, direction) in [direction, other].into_iter().enumerate() {
+                let mut alone = [[5000.0; LANES]];
+                floor.range(origin, &[direction.map(|v| [v; LANES])], &near, &mut alone);
+                prop_assert_eq!(ranges[chunk], alone[0]);
+            }
+            let range = ranges[0][0];
             for i in 0..50 {
                 prop_assert!(gap_along(&floor, origin, direction, range * f64::from(i) / 50.0) > -1e-6);
             }
