@@ -385,6 +385,11 @@ def test_the_command_line(trained: Path, tmp_path: Path) -> None:
     assert "has a training already" in again.output
     assert "give more with --timesteps" in call(*command, "--resume").output
     assert "describes another training" in call(*command, "--seed", "1", "--resume").output
+    striding = [*command, "--set", "least_waypoint=0.2", "--timesteps", "64", "--resume"]
+    assert call(*striding).exit_code == 0
+    card = json.loads((out / "agent.json").read_text())
+    assert card["hyperparameters"]["least_waypoint"] == 0.2
+    assert len(card["commands"]) == 2
     assert call(*command, "--fresh").exit_code == 0
     nothing = call("ppo", "--out", str(tmp_path / "none"), "--resume")
     assert "has no training to go on with" in nothing.output

@@ -23,6 +23,8 @@ _LIBRARIES = (
     *("auvgym", "stable_baselines3", "sb3_contrib", "torch", "onnx", "onnxruntime"),
     *("gymnasium", "numpy"),
 )
+# Not to stand still can be taught to a network that can do the rest.
+_STRIDE = "least_waypoint"
 
 
 @dataclass(frozen=True)
@@ -58,7 +60,8 @@ def train(
     What goes on flies other episodes than an uninterrupted training would.
 
     Args:
-        config: what is trained. With ``resume`` all but ``timesteps`` must be what it was.
+        config: what is trained. With ``resume`` all but ``timesteps``, ``validation_episodes`` and
+            the hyperparameter ``least_waypoint`` must be what it was.
         folder: where it goes (docs/training.md lists the files).
         resume: go on with the training in ``folder``.
         fresh: remove the training in ``folder`` first.
@@ -91,10 +94,18 @@ def train(
 def _resumed(config: TrainingConfig, place: TrainingFolder) -> dict[str, Any]:
     state = place.read_state()
     before = TrainingConfig.load(place.config)
-    if replace(before, timesteps=config.timesteps) != config:
+    kept = {key: value for key, value in before.hyperparameters.items() if key != _STRIDE}
+    given = {key: value for key, value in config.hyperparameters.items() if key == _STRIDE}
+    same = replace(
+        before,
+        timesteps=config.timesteps,
+        validation_episodes=config.validation_episodes,
+        hyperparameters=kept | given,
+    )
+    if config != same:
         raise TrainingError(
             f"{place.config} describes another training; --resume goes on with the same, and only "
-            "--timesteps may change"
+            f"--timesteps, --validation-episodes and {_STRIDE} may change"
         )
     if state["timesteps"] >= config.timesteps:
         raise TrainingError(
