@@ -49,7 +49,7 @@ def tiny(algorithm: str = "ppo", timesteps: int = 96, **others: Any) -> Training
 
 def small(algorithm: str, environment: str = "AUVDynamic3D-v0", **more: Any) -> Any:
     """A fresh model with a small network."""
-    sizes = {"n_envs": 2, "batch_size": 32, "net_arch": [8, 8], **more}
+    sizes = {"n_envs": 2, "mixture": None, "batch_size": 32, "net_arch": [8, 8], **more}
     if algorithm == "recurrent-ppo":
         sizes |= {"lstm_hidden_size": 5}
     if algorithm in ("sac", "tqc", "dqn"):
