@@ -425,6 +425,17 @@ def test_shipped_agents_fly_by_name() -> None:
         policies.make("ppo").reset(odd)
 
 
+@pytest.mark.parametrize("environment", ["AUVDynamic2D-v0", "AUVStatic3D-v0"])
+def test_shipped_agents_are_better_than_the_rule(environment: str) -> None:
+    suite = evaluation.single_suite(environment, 30, "hard")
+    specs = [evaluation.PolicySpec(name) for name in ("ppo", "sonar-rule")]
+    results = evaluation.run(suite, specs, evaluation.Store(None), workers=1)
+    solved = dict.fromkeys(("ppo", "sonar-rule"), 0)
+    for result in results:
+        solved[result.policy] += result.success
+    assert solved["ppo"] > solved["sonar-rule"] + 5
+
+
 def test_a_shipped_agent_without_its_runtime_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "onnxruntime", None)
     with pytest.raises(ImportError, match=r"auvgym\[agents\]"):
