@@ -150,6 +150,8 @@ def times(episodes: list[EpisodeResult]) -> np.ndarray:
 def interval(differences: np.ndarray, digits: int) -> str:
     """The mean of paired differences and its 95 % interval."""
     mean = differences.mean()
+    if len(differences) < 2:
+        return f"{mean:+.{digits}f}"
     half = 1.96 * differences.std(ddof=1) / len(differences) ** 0.5
     return f"{mean:+.{digits}f} [{mean - half:+.{digits}f}, {mean + half:+.{digits}f}]"
 
@@ -185,7 +187,7 @@ def recipes(trained: Mapping[str, Path]) -> str:
     """How each network was made, out of its card."""
     lines = [
         "## How they were made\n",
-        "Each by one command, one thread for the networks; the card has the curve.\n",
+        "By these commands, one thread for the networks; the card has the curve.\n",
         "| network | command | legs | minutes | best on validation |",
         "|---|---|---|---|---|",
     ]
