@@ -249,6 +249,13 @@ def test_waypoints_are_never_where_the_vehicle_is() -> None:
     seen, expected = envs.step(stays)[0], plain.step(stride(stays, 0.2))[0]
     np.testing.assert_array_equal(seen, expected)
     assert (seen != plain.step(stays)[0]).any(axis=1).all()
+    late = {"hyperparameters": {"least_waypoint": 0.2, "least_waypoint_from": 0.75}}
+    envs, plain = models.make_envs(tiny(**late), None, 64), models.plain_envs(tiny())
+    for one in (envs, plain):  # 72 of 96 legs are free, 64 of them flown
+        models.seed_envs(one, config, part=0)
+        one.reset()
+    for asked in (stays, stays, stride(stays, 0.2)):
+        np.testing.assert_array_equal(envs.step(stays)[0], plain.step(asked)[0])
     rng = np.random.default_rng(0)
     for wide in (2, 3):
         actions = rng.uniform(-1.2, 1.2, (500, wide)).astype(np.float32)
@@ -329,6 +336,7 @@ def test_the_first_actions_go_where_the_bias_says() -> None:
         ({"hyperparameters": {"normalize": "all"}}, "unknown normalize 'all'"),
         ({"hyperparameters": {"least_waypoint": 0.7}}, "must be reaches, more than 0"),
         ({"hyperparameters": {"least_waypoint": "far"}}, "least_waypoint = 'far': must be a num"),
+        ({"hyperparameters": {"least_waypoint_from": 2}}, "_from = 2: must be a share, 0 .. 1"),
         ({"hyperparameters": {"mixture": []}}, None),
         ({"hyperparameters": {"mixture": "hard"}}, "mixture = 'hard': must be a list"),
         ({"hyperparameters": {"action_bias": [0, 0, 0]}}, "action_bias = "),

@@ -16,6 +16,8 @@ from auvgym.training.recipes import load_recipe
 SCHEMA = 1
 #: Up to these the seeds of trainings stay apart (:mod:`auvgym.evaluation.seeds`).
 MAX_ENVS, MAX_SEED = 10_000, 2_000
+#: Hyperparameters of waypoints that are moved away (:mod:`auvgym.training.stride`).
+STRIDE = ("least_waypoint", "least_waypoint_from")
 #: Settings that settle others: those are named by them, too.
 _DECIDES = {"scenario": "difficulty", "planner": "planner_parameters"}
 
@@ -71,6 +73,14 @@ class TrainingConfig:
         given = self.hyperparameters.get("least_waypoint")
         if given is not None and (isinstance(given, bool) or not isinstance(given, int | float)):
             raise TrainingError(f"least_waypoint = {given!r}: must be a number of reaches, as 0.2")
+        return given
+
+    @property
+    def least_waypoint_from(self) -> float:
+        """Share of the training's legs before ``least_waypoint`` holds where it explores."""
+        given = self.hyperparameters.get("least_waypoint_from", 0)
+        if isinstance(given, bool) or not isinstance(given, int | float) or not 0 <= given <= 1:
+            raise TrainingError(f"least_waypoint_from = {given!r}: must be a share, 0 .. 1")
         return given
 
     @property

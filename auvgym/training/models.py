@@ -10,7 +10,7 @@ import auvgym.sb3  # first: it says what to install
 from auvgym._extras import require
 from auvgym._names import unknown
 from auvgym.evaluation.seeds import training_seed
-from auvgym.training.config import TrainingConfig, TrainingError
+from auvgym.training.config import STRIDE, TrainingConfig, TrainingError
 from auvgym.training.mixture import MixedVecEnv
 from auvgym.training.stride import LONGEST, SHORTEST, StrideVecEnv
 
@@ -23,7 +23,7 @@ CLASSES = {
     "dqn": ("stable_baselines3", "DQN"),
 }
 #: Hyperparameters that are this package's own.
-OWN = ("policy", "n_envs", "mixture", "normalize", "action_bias", "least_waypoint")
+OWN = ("policy", "n_envs", "mixture", "normalize", "action_bias", *STRIDE)
 NORMALIZE = {
     None: None,
     "observations": {"norm_obs": True, "norm_reward": False},
@@ -52,14 +52,15 @@ def algorithm_class(algorithm: str) -> Any:
     return getattr(require(module, "train"), name)
 
 
-def make_envs(config: TrainingConfig, statistics: Path | None) -> Any:
+def make_envs(config: TrainingConfig, statistics: Path | None, flown: int = 0) -> Any:
     """The environments to train in, normalised if the configuration says so.
 
     Args:
         config: the training.
         statistics: file of the normalisation to go on with.
+        flown: legs that the training has flown.
     """
-    envs = plain_envs(config)
+    envs = plain_envs(config, flown)
     chosen = config.hyperparameters.get("normalize")
     if chosen not in NORMALIZE:
         names = [str(name) for name in NORMALIZE]
@@ -74,7 +75,7 @@ def make_envs(config: TrainingConfig, statistics: Path | None) -> Any:
     return normalize(envs, gamma=gamma, **kinds)
 
 
-def plain_envs(config: TrainingConfig) -> Any:
+def plain_envs(config: TrainingConfig, flown: int = 0) -> Any:
     """The environments themselves, shared out among the entries of ``mixture`` if there is one."""
     mixture = config.hyperparameters.get("mixture") or [{}]
     listed = isinstance(mixture, list) and all(isinstance(one, dict) for one in mixture)
@@ -96,7 +97,7 @@ def plain_envs(config: TrainingConfig) -> Any:
     except TypeError as error:  # a setting that the environment does not have
         raise TrainingError(f"{config.environment}: {error}") from error
     envs = parts[0] if len(parts) == 1 else MixedVecEnv(parts)
-    least = config.least_waypoint
+    least, share = config.least_waypoint, config.least_waypoint_from
     if least is None:
         return envs
     if hasattr(envs.action_space, "n"):
@@ -105,7 +106,7 @@ def plain_envs(config: TrainingConfig) -> Any:
         raise TrainingError(
             f"least_waypoint = {least}: must be reaches, more than 0 and at most {LONGEST}"
         )
-    return StrideVecEnv(envs, least)
+    return StrideVecEnv(envs, least, round(share * config.timesteps) - flown)
 
 
 def make_model(config: TrainingConfig, envs: Any) -> Any:

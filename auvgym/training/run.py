@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from auvgym._extras import require
 from auvgym.evaluation.seeds import seeds_of
-from auvgym.training.config import TrainingConfig, TrainingError
+from auvgym.training.config import STRIDE, TrainingConfig, TrainingError
 from auvgym.training.curve import Curve, Row
 from auvgym.training.folder import TrainingFolder
 
@@ -23,8 +23,6 @@ _LIBRARIES = (
     *("auvgym", "stable_baselines3", "sb3_contrib", "torch", "onnx", "onnxruntime"),
     *("gymnasium", "numpy"),
 )
-# Not to stand still can be taught to a network that can do the rest.
-_STRIDE = "least_waypoint"
 
 
 @dataclass(frozen=True)
@@ -61,7 +59,7 @@ def train(
 
     Args:
         config: what is trained. With ``resume`` all but ``timesteps``, ``validation_episodes`` and
-            the hyperparameter ``least_waypoint`` must be what it was.
+            the hyperparameters ``least_waypoint`` and ``least_waypoint_from`` must be what it was.
         folder: where it goes (docs/training.md lists the files).
         resume: go on with the training in ``folder``.
         fresh: remove the training in ``folder`` first.
@@ -94,8 +92,8 @@ def train(
 def _resumed(config: TrainingConfig, place: TrainingFolder) -> dict[str, Any]:
     state = place.read_state()
     before = TrainingConfig.load(place.config)
-    kept = {key: value for key, value in before.hyperparameters.items() if key != _STRIDE}
-    given = {key: value for key, value in config.hyperparameters.items() if key == _STRIDE}
+    kept = {key: value for key, value in before.hyperparameters.items() if key not in STRIDE}
+    given = {key: value for key, value in config.hyperparameters.items() if key in STRIDE}
     same = replace(
         before,
         timesteps=config.timesteps,
@@ -105,7 +103,7 @@ def _resumed(config: TrainingConfig, place: TrainingFolder) -> dict[str, Any]:
     if config != same:
         raise TrainingError(
             f"{place.config} describes another training; --resume goes on with the same, and only "
-            f"--timesteps, --validation-episodes and {_STRIDE} may change"
+            f"--timesteps, --validation-episodes, {' and '.join(STRIDE)} may change"
         )
     if state["timesteps"] >= config.timesteps:
         raise TrainingError(
@@ -182,7 +180,7 @@ class _Run:
 
         config, place = self.config, self.place
         statistics = place.statistics_of("last") if self.part else None
-        envs = models.make_envs(config, statistics)
+        envs = models.make_envs(config, statistics, self.state["timesteps"])
         if self.part:
             maker = models.algorithm_class(config.algorithm)
             model = maker.load(place.model("last"), env=envs, device="cpu")

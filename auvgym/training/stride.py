@@ -2,7 +2,8 @@
 
 A network without memory that asks for its own place sees the same again and asks for the same
 again, to the time limit. While it explores it is shaken loose, so that it does not unlearn that.
-``least_waypoint`` moves such a waypoint out along its direction, in training and ever after.
+``least_waypoint`` moves such a waypoint out along its direction, in training and ever after. What
+begins with it learns worse than what gets it late: ``least_waypoint_from``.
 """
 
 from __future__ import annotations
@@ -38,11 +39,12 @@ class StrideVecEnv(VecEnvWrapper):  # type: ignore[misc]  # SB3 is not looked in
     Args:
         venv: the environments.
         least: shortest distance of a waypoint, in reaches.
+        free: legs to fly before that holds.
     """
 
-    def __init__(self, venv: Any, least: float) -> None:
+    def __init__(self, venv: Any, least: float, free: int = 0) -> None:
         super().__init__(venv)
-        self._least = least
+        self._least, self._free = least, free
 
     def reset(self) -> Any:
         """Begin an episode in every environment."""
@@ -50,7 +52,8 @@ class StrideVecEnv(VecEnvWrapper):  # type: ignore[misc]  # SB3 is not looked in
 
     def step_async(self, actions: npt.NDArray[np.float32]) -> None:
         """Take the actions, (n, d)."""
-        self.venv.step_async(stride(actions, self._least))
+        self._free -= self.num_envs
+        self.venv.step_async(actions if self._free >= 0 else stride(actions, self._least))
 
     def step_wait(self) -> Any:
         """Fly one leg in every environment."""
