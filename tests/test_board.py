@@ -65,9 +65,9 @@ def test_every_board_is_of_a_shipped_suite(make_board: ModuleType) -> None:
             auvgym.policies.make(spec.name, **spec.parameters)
 
 
-def test_every_policy_is_on_the_board_of_the_papers(make_board: ModuleType) -> None:
-    suite = evaluation.load_suite("paper")
-    entered = make_board.entries(suite, make_board.definitions()["paper"])
+@pytest.mark.parametrize("name", ["paper", "standard"])
+def test_every_policy_is_on_the_board(name: str, make_board: ModuleType) -> None:
+    entered = make_board.entries(evaluation.load_suite(name), make_board.definitions()[name])
     assert {spec.name for spec, _ in entered} >= set(auvgym.list_policies())
 
 

@@ -40,7 +40,8 @@ HURRY = {"difficulty": "easy", "time_factor": 1.0}
 
 
 def tiny(algorithm: str = "ppo", timesteps: int = 96, **others: Any) -> TrainingConfig:
-    hyperparameters = {**TINY, **others.pop("hyperparameters", {})}
+    without = {"least_waypoint": None, "least_waypoint_from": 0}
+    hyperparameters = {**TINY, **without, **others.pop("hyperparameters", {})}
     settings = {"validate_every": 40, "validation_episodes": 3, "settings": HURRY, **others}
     return configure(
         algorithm, "AUVDynamic2D-v0", timesteps, hyperparameters=hyperparameters, **settings
