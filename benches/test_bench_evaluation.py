@@ -42,7 +42,7 @@ def test_report_of_fifty_thousand_episodes(benchmark: Any, tmp_path: Path) -> No
         boards = board(rows, "policy-3")
         tables = {table.stratum: table for table in score_tables(rows)}
         columns = {stratum: columns_of(stratum) for stratum in boards}
-        write_board(tmp_path, "benchmark", "", boards, columns, tables, {})
+        write_board(tmp_path, "benchmark", "", boards, columns, tables, {}, [])
 
     benchmark.pedantic(report, rounds=1)
 

@@ -14,7 +14,7 @@ from board_rows import row
 from typer.testing import CliRunner
 
 from auvgym.cli import app
-from auvgym.cli.page import episode_figure as drawn
+from auvgym.cli.page import episode_drawing
 from auvgym.evaluation import EpisodeResult, Instance, PolicySpec, Store, Suite, replay, run
 from auvgym.evaluation.board import board
 from auvgym.evaluation.plans import plans_of
@@ -85,6 +85,33 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     )
     assert done.exit_code == 0, done.output
     return place / "report"
+
+
+def test_the_pages_do_not_depend_on_the_processes_that_draw_them(
+    folder: Path, tmp_path: Path
+) -> None:
+    done = CliRunner().invoke(
+        app,
+        ["report", str(folder.parent / "results.db"), "--out", str(tmp_path), "--replays", "1",
+         "--workers", "2"],
+    )  # fmt: skip
+    assert done.exit_code == 0, done.output
+    written = {one.relative_to(folder): one.read_bytes() for one in folder.rglob("*.*")}
+    assert written == {one.relative_to(tmp_path): one.read_bytes() for one in tmp_path.rglob("*.*")}
+
+
+def test_an_episode_whose_log_is_damaged_is_named(folder: Path, tmp_path: Path) -> None:
+    with Store(folder.parent / "results.db", read_only=True) as store:
+        damaged = [dataclasses.replace(one, actions=b"none") for one in store.results()]
+    with Store(tmp_path / "damaged.db") as store:
+        store.add(*damaged)
+    for workers in ("1", "2"):
+        done = CliRunner().invoke(
+            app,
+            ["report", str(tmp_path / "damaged.db"), "--out", str(tmp_path), "--workers", workers],
+        )
+        assert done.exit_code == 2
+        assert re.search(r"Dynamic2D.* seed \d+: the action log is damaged", done.output)
 
 
 def test_the_folder_asks_for_nothing_outside_it(folder: Path) -> None:
@@ -162,14 +189,15 @@ def test_an_episode_shows_each_plan_from_its_time_on() -> None:
     assert times[0] == 0.0
     assert plans_of(flown, longest_s=0.0) == []
     assert plans_of(dataclasses.replace(flown, policy="rrt-star")) == []
-    figure = drawn(replay(flown), flown)
-    ways = [index for index, trace in enumerate(figure.data) if trace.name == "plan"]
+    drawing = episode_drawing(replay(flown), flown)
+    ways = [index for index, trace in enumerate(drawing["data"]) if trace["name"] == "plan"]
     assert len(ways) == len(plans)
-    for frame in (figure.frames[0], figure.frames[30], figure.frames[-1]):
-        shown = [frame.data[frame.traces.index(index)].visible for index in ways]
+    frames = drawing["frames"]
+    for frame in (frames[0], frames[30], frames[-1]):
+        shown = [frame["data"][frame["traces"].index(index)]["visible"] for index in ways]
         assert sum(shown) == 1
-    first = figure.frames[0]
-    assert first.data[first.traces.index(ways[0])].visible
+    first = frames[0]
+    assert first["data"][first["traces"].index(ways[0])]["visible"]
 
 
 def test_what_cannot_be_reported_says_why(folder: Path, tmp_path: Path) -> None:

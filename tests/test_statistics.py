@@ -139,8 +139,8 @@ def test_nothing_to_compare_is_said() -> None:
 def test_counts_of_a_draw_stand_for_the_draw(count: int) -> None:
     values = np.array(drawn(count, count))
     counts = statistics._draws(np.zeros(count, dtype=np.int64), 50, 2)
-    assert (counts.sum(axis=1) == count).all()
-    draws = [np.repeat(values, one.astype(int)) for one in counts]
+    assert (counts.sum(axis=0) == count).all()
+    draws = [np.repeat(values, one.astype(int)) for one in counts.T]
     low, high = np.percentile([interquartile_mean(one) for one in draws], [2.5, 97.5])
     found = statistics._estimate_iqm(values, counts)
     assert found == pytest.approx((interquartile_mean(values), low, high))

@@ -114,6 +114,11 @@ def test_a_lock_of_other_instances_is_refused(mine: Path) -> None:
         load_suite(mine)
 
 
+def test_the_hash_of_a_suite_is_computed_once() -> None:
+    suite = load_suite("demo")
+    assert suite.hash is suite.hash  # every row of a results file is held to it
+
+
 def test_freezing_twice_gives_the_same(mine: Path) -> None:
     suite = load_suite(mine)
     assert lock_text(suite, world_hashes(suite)) == mine.with_suffix(".lock").read_text()

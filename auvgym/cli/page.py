@@ -50,7 +50,7 @@ def write_leaderboard_page(
         shown.sort(key=lambda pair: -pair[0].flight.maps[0][1].dimensions)
         for replayed, row in shown:
             label = f"{stratum_label(row.instance.stratum)} · {row.policy}"
-            episodes[label] = episode_figure(replayed, row)
+            episodes[label] = episode_drawing(replayed, row)
     page = report.leaderboard_page(
         [_cells(summary) for summary in summaries],
         episodes,
@@ -67,7 +67,7 @@ def write_episode_page(row: EpisodeResult, path: Path) -> Replay:
     from auvgym import evaluation, report
 
     replayed = evaluation.replay(row)
-    _write(path, report.figure_page(episode_figure(replayed, row), f"{row.policy}: {row.outcome}"))
+    _write(path, report.figure_page(episode_drawing(replayed, row), f"{row.policy}: {row.outcome}"))
     return replayed
 
 
@@ -86,15 +86,15 @@ def write_plan_page(
     return _write(path, report.figure_page(report.plan_figure(world, plan, chart, corners), title))
 
 
-def episode_figure(replayed: Replay, row: EpisodeResult) -> Any:
-    """The interactive figure of a replayed episode."""
+def episode_drawing(replayed: Replay, row: EpisodeResult) -> dict[str, Any]:
+    """The interactive figure of a replayed episode, as plotly.js reads it."""
     import numpy as np
 
-    from auvgym import report
     from auvgym.evaluation.plans import plans_of
+    from auvgym.report.episode import episode_drawing
 
     core: Any = replayed.flight.env.unwrapped
-    return report.episode_figure(
+    return episode_drawing(
         replayed.flight.worlds,
         np.asarray(core.episode.trail, dtype=np.float64),
         plans=plans_of(row),

@@ -221,7 +221,7 @@ def _compare(table: Table, reference: str | None, resamples: int, seed: int) -> 
 
 
 def _draws(groups: NDArray[np.int64], resamples: int, seed: int) -> Scores:
-    """How often each draw has each instance, (resamples, instances).
+    """How often each draw has each instance, (instances, resamples).
 
     Within each group as many are drawn as it has, with replacement.
     """
@@ -233,21 +233,24 @@ def _draws(groups: NDArray[np.int64], resamples: int, seed: int) -> Scores:
         drawn.append(members[random.integers(0, len(members), (resamples, len(members)))])
     places = np.concatenate(drawn, axis=1) + count * np.arange(resamples)[:, None]
     counts = np.bincount(places.ravel(), minlength=resamples * count)
-    return counts.reshape(resamples, count).astype(np.float64)
+    return np.ascontiguousarray(counts.reshape(resamples, count).T, dtype=np.float64)
 
 
 def _estimate_iqm(values: Scores, draws: Scores) -> Estimate:
     """The interquartile mean of each draw, from its counts in the order of the values."""
     order = np.argsort(values, kind="stable")
-    cut = len(values) // 4
-    within = np.cumsum(draws[:, order], axis=1).clip(cut, len(values) - cut)
-    weights = np.diff(within, axis=1, prepend=cut)
-    drawn = weights @ values[order] / (len(values) - 2 * cut)
+    ranked, cut = values[order], len(values) // 4
+    half = len(values) - 2 * cut
+    # How many of the middle half are better than each value but the last: a step up for each.
+    better = draws[order]
+    np.cumsum(better, axis=0, out=better)
+    np.clip(len(values) - cut - better[:-1], 0.0, half, out=better[:-1])
+    drawn = ranked[0] + np.diff(ranked) @ better[:-1] / half
     return _estimate(float(interquartile_mean(values)), drawn)
 
 
 def _estimate_mean(values: Scores, draws: Scores) -> Estimate:
-    return _estimate(float(values.mean()), draws @ values / len(values))
+    return _estimate(float(values.mean()), values @ draws / len(values))
 
 
 def _estimate(value: float, drawn: Scores) -> Estimate:

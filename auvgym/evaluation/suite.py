@@ -7,6 +7,7 @@ import json
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from functools import cached_property
 from typing import Any
 
 DEFAULT_DIFFICULTY = "normal"
@@ -81,7 +82,7 @@ class Suite:
     description: str = ""
     policies: tuple[str, ...] = ()
 
-    @property
+    @cached_property  # every row of a results file is held to it
     def hash(self) -> str:
         """16 hex digits over the instances and their worlds: a suite that changed is another."""
         text = json.dumps([asdict(instance) for instance in self.instances], sort_keys=True)

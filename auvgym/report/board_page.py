@@ -7,9 +7,9 @@ when they are looked at, so that a board of thousands of episodes opens at once.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -18,19 +18,11 @@ from auvgym.evaluation.board import BoardColumn, BoardRow
 from auvgym.evaluation.statistics import Table
 from auvgym.evaluation.suite import Stratum, stratum_label
 from auvgym.report.charts import pareto_chart, profile_chart
-from auvgym.report.page import figure_json, resource
+from auvgym.report.page import resource
 from auvgym.report.tables import Shown, ranked_tables
 
 # Called with the number of episodes drawn so far, and the number in all.
 OnEpisode = Callable[[int, int], None]
-
-
-@dataclass(frozen=True)
-class Watched:
-    """An episode to watch: what it is called, and what makes its figure when it is its turn."""
-
-    label: str
-    figure: Callable[[], Any]
 
 
 def write_board(
@@ -40,7 +32,8 @@ def write_board(
     boards: Mapping[Stratum, Sequence[BoardRow]],
     columns: Mapping[Stratum, Sequence[BoardColumn]],
     tables: Mapping[Stratum, Table],
-    watched: Mapping[Stratum, Sequence[Watched]],
+    watched: Mapping[Stratum, Sequence[str]],
+    figures: Iterable[tuple[int, str]],
     on_episode: OnEpisode | None = None,
 ) -> Path:
     """Write the report.
@@ -52,8 +45,10 @@ def write_board(
         boards: rows by stratum, as of :func:`auvgym.evaluation.board.board`.
         columns: what to show of each stratum.
         tables: the scores behind the profiles.
-        watched: episodes by stratum; may be empty.
-        on_episode: called after each is drawn.
+        watched: what the episodes to watch are called, by stratum; may be empty.
+        figures: of these episodes, as of :func:`auvgym.report.page.figure_json`, in any order, each
+            with its number: they are counted through from 0 in the order of ``boards``.
+        on_episode: called after each is written.
 
     Returns:
         The path of ``index.html``.
@@ -66,17 +61,18 @@ def write_board(
         old.unlink()
     plotly_js = require("plotly.offline", "report").get_plotlyjs()
     (folder / "plotly.js").write_text(plotly_js, encoding="utf-8")
-    total = sum(len(episodes) for episodes in watched.values())
-    sections, drawn = [], 0
+    total = sum(map(len, watched.values()))
+    for drawn, (number, figure) in enumerate(figures, start=1):
+        text = f"auvgymEpisode({number}, {figure});"
+        (folder / "episodes" / f"{number}.js").write_text(text, encoding="utf-8")
+        if on_episode is not None:
+            on_episode(drawn, total)
+    sections, numbers = [], count()
     for number, (stratum, rows) in enumerate(boards.items()):
-        options = []
-        for episode in watched.get(stratum, ()):
-            text = f"auvgymEpisode({drawn}, {figure_json(episode.figure())});"
-            (folder / "episodes" / f"{drawn}.js").write_text(text, encoding="utf-8")
-            options.append(f'<option value="{drawn}">{escape(episode.label)}</option>')
-            drawn += 1
-            if on_episode is not None:
-                on_episode(drawn, total)
+        options = [
+            f'<option value="{next(numbers)}">{escape(label)}</option>'
+            for label in watched.get(stratum, ())
+        ]
         sections.append(_section(number, stratum, rows, columns[stratum], tables, options))
     page = _PAGE.format(
         title=escape(title),

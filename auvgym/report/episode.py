@@ -19,6 +19,7 @@ TRAIL_POINTS = 300
 FRAME_MS = 70
 
 Change = Callable[[float], dict[str, Any]]
+Drawing = dict[str, Any]
 Plan = tuple[float, Points]
 
 
@@ -55,6 +56,31 @@ def episode_figure(
         ValueError: no world, or a trail with fewer than two points or not three columns.
         ImportError: without plotly; says which extra brings it.
     """
+    from auvgym._extras import require
+
+    drawing = episode_drawing(
+        worlds, trail, plan, plans=plans, times_s=times_s, title=title, subtitle=subtitle,
+        frames=frames,
+    )  # fmt: skip
+    return require("plotly.graph_objects", "report").Figure(drawing)
+
+
+def episode_drawing(
+    worlds: Sequence[World],
+    trail: Points,
+    plan: Points | None = None,
+    *,
+    plans: Sequence[Plan] = (),
+    times_s: NDArray[np.float64] | None = None,
+    title: str | None = None,
+    subtitle: str = "",
+    frames: int = FRAMES,
+) -> Drawing:
+    """:func:`episode_figure` as the dict that plotly.js reads: its checks take most of the time.
+
+    Raises:
+        ValueError, ImportError: as there.
+    """
     way = np.asarray(trail, dtype=np.float64)
     if not len(worlds):
         raise ValueError("worlds is empty; an episode meets at least one map")
@@ -67,21 +93,22 @@ def episode_figure(
     shown = list(plans) if plan is None else [(-np.inf, plan), *plans]
     stage = _Stage(scene, worlds, way, clock, shown)
     moments = np.linspace(clock[0], clock[-1], max(2, frames))
-    figure = scene.go.Figure(
-        data=stage.traces,
-        frames=[
-            scene.go.Frame(
-                name=str(index), data=stage.updates(float(moment)), traces=stage.changing
-            )
+    return {
+        "data": [trace.to_plotly_json() for trace in stage.traces],
+        "frames": [
+            {
+                "name": str(index),
+                "data": stage.updates(float(moment)),
+                "traces": stage.changing,
+            }
             for index, moment in enumerate(moments)
         ],
-    )
-    figure.update_layout(
-        **scene.layout(),
-        **base_layout(title if title is not None else scene.facts.name, subtitle),
-        **_controls(moments, [stage.map_at(float(moment)) for moment in moments]),
-    )
-    return figure
+        "layout": {
+            **scene.layout(),
+            **base_layout(title if title is not None else scene.facts.name, subtitle),
+            **_controls(moments, [stage.map_at(float(moment)) for moment in moments]),
+        },
+    }
 
 
 class _Stage:

@@ -107,11 +107,15 @@ class Plane(Scene):
         across, along = self.facts.axis_names
         axis = {"gridcolor": theme.RULE, "zeroline": False, "constrain": "domain"}
         return {
-            "xaxis": {**axis, "title": f"{across} ({self.unit})", "range": [low[0], high[0]]},
+            "xaxis": {
+                **axis,
+                "title": {"text": f"{across} ({self.unit})"},
+                "range": [low[0], high[0]],
+            },
             "margin": {"l": 76, "r": 10, "t": 104, "b": 56},
             "yaxis": {
                 **axis,
-                "title": f"{along} ({self.unit})",
+                "title": {"text": f"{along} ({self.unit})"},
                 "range": [low[1], high[1]],
                 "scaleanchor": "x",
             },

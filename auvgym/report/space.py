@@ -130,11 +130,19 @@ class Space(Scene):
         return {
             "margin": {"l": 10, "r": 10, "t": 104, "b": 10},
             "scene": {
-                "xaxis": {**axis, "title": f"{across} ({self.unit})", "range": [low[0], high[0]]},
-                "yaxis": {**axis, "title": f"{along} ({self.unit})", "range": [low[1], high[1]]},
+                "xaxis": {
+                    **axis,
+                    "title": {"text": f"{across} ({self.unit})"},
+                    "range": [low[0], high[0]],
+                },
+                "yaxis": {
+                    **axis,
+                    "title": {"text": f"{along} ({self.unit})"},
+                    "range": [low[1], high[1]],
+                },
                 "zaxis": {
                     **axis,
-                    "title": f"depth ({self.depth_unit}{stretched})",
+                    "title": {"text": f"depth ({self.depth_unit}{stretched})"},
                     "range": [1.02 * bottom, -1.5 * LAND_HEIGHT * bottom],
                 },
                 "aspectmode": "manual",
