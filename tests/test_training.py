@@ -153,6 +153,24 @@ def test_the_file_does_what_the_model_does(trained: Path) -> None:
         observation, _, _, _, info = env.step(action)
 
 
+def test_returns_over_several_legs_outlive_a_stop(tmp_path: Path) -> None:
+    def stop(done: int, total: int) -> None:
+        if done == 60:
+            raise KeyboardInterrupt
+
+    sizes = {"n_envs": 4, "n_steps": 10, "buffer_size": 400, "learning_starts": 20, "net_arch": [8]}
+    config = configure(
+        "sac", "AUVDynamic2D-v0", 96, hyperparameters=sizes,
+        validate_every=40, validation_episodes=3, settings=HURRY,
+    )  # fmt: skip
+    with pytest.raises(KeyboardInterrupt):
+        training.train(config, tmp_path, on_progress=stop)
+    assert (tmp_path / "last-replay-buffer.pkl").is_file()
+    assert training.train(config, tmp_path, resume=True).timesteps == 96
+    saved = models.load_model(config, tmp_path / "last.zip")
+    assert (saved.replay_buffer.n_steps, saved.replay_buffer.gamma) == (10, 0.99)
+
+
 @pytest.mark.parametrize("algorithm", ["ppo", "recurrent-ppo", "sac", "tqc"])
 def test_networks_as_onnx(algorithm: str, tmp_path: Path) -> None:
     model, _ = small(algorithm, normalize=None)

@@ -165,7 +165,7 @@ class _Run:
                 left,
                 callback=[Progress(on_progress, config.timesteps), validation],
                 reset_num_timesteps=self.part == 0,
-                log_interval=1 if hasattr(model, "n_steps") else 100,
+                log_interval=1 if hasattr(model, "rollout_buffer") else 100,
             )
         finally:
             self._keep(model, best=False)
@@ -182,8 +182,7 @@ class _Run:
         statistics = place.statistics_of("last") if self.part else None
         envs = models.make_envs(config, statistics, self.state["timesteps"])
         if self.part:
-            maker = models.algorithm_class(config.algorithm)
-            model = maker.load(place.model("last"), env=envs, device="cpu")
+            model = models.load_model(config, place.model("last"), envs)
             if place.replay_buffer.is_file():
                 model.load_replay_buffer(place.replay_buffer)
             model.set_random_seed(config.seed + self.part)
