@@ -49,7 +49,7 @@ def write_leaderboard_page(
         # Space before plane: the page opens on the first.
         shown.sort(key=lambda pair: -pair[0].flight.maps[0][1].dimensions)
         for replayed, row in shown:
-            label = f"{stratum_label(row.instance.stratum)} · {row.policy}"
+            label = f"{stratum_label(row.stratum)} · {row.policy}"
             episodes[label] = episode_drawing(replayed, row)
     page = report.leaderboard_page(
         [_cells(summary) for summary in summaries],
@@ -110,7 +110,7 @@ def _worth_watching(
     chosen: list[EpisodeResult] = []
     for stratum, group in groupby(summaries, key=lambda summary: summary.stratum):
         ranked = [summary.policy for summary in group]
-        flown = [row for row in results if row.instance.stratum == stratum and row.steps]
+        flown = [row for row in results if row.stratum == stratum and row.steps]
         by_winner = sorted(
             (row for row in flown if row.policy == ranked[0]), key=lambda row: row.score
         )

@@ -113,7 +113,7 @@ def _watched(
     flown: dict[Any, list[EpisodeResult]] = {}
     for row in rows:
         if row.steps and row.actions:
-            key = row.instance.stratum, (row.policy, row.policy_seed, row.parameters)
+            key = row.stratum, (row.policy, row.policy_seed, row.parameters)
             flown.setdefault(key, []).append(row)
     watched: dict[Stratum, list[tuple[str, EpisodeResult]]] = {}
     for stratum, ranked in boards.items():

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 from typing import NamedTuple
 
 from auvgym.evaluation.result import EpisodeResult
@@ -45,17 +44,11 @@ def board(
     rows = list(results)
     compared = {(one.stratum, one.entrant): one for one in compare(rows, reference)}
     everywhere = {entrant for stratum, entrant in compared if stratum == OVERALL}
-    rows += [
-        replace(row, environment=OVERALL[0], difficulty="", scenario="", settings="")
-        for row in rows
-        if (row.policy, row.policy_seed, row.parameters) in everywhere
-    ]
+    together = [row for row in rows if (row.policy, row.policy_seed, row.parameters) in everywhere]
     boards: dict[Stratum, list[BoardRow]] = {}
-    for summary in summarise(rows):
+    for summary in [*summarise(rows), *summarise(together, lambda _: OVERALL)]:
         comparison = compared.get((summary.stratum, summary.entrant))
         boards.setdefault(summary.stratum, []).append(BoardRow(summary, comparison))
-    if OVERALL in boards:
-        boards[OVERALL] = boards.pop(OVERALL)
     return boards
 
 

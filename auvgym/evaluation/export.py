@@ -117,7 +117,7 @@ def _write_arena(database: sqlite3.Connection, rows: Sequence[EpisodeResult]) ->
                 database,
                 "experiments (name, totaltime, timelimit, memorylimit, runcount, version, "
                 "hostname, cpuinfo, date, seed, setup)",
-                f"{row.suite}: {stratum_label(row.instance.stratum)}",
+                f"{row.suite}: {stratum_label(row.stratum)}",
                 sum(one.time_s for one in same),
                 max(one.time_limit_s for one in same),
                 0.0,
@@ -147,7 +147,7 @@ def _write_arena(database: sqlite3.Connection, rows: Sequence[EpisodeResult]) ->
 
 
 def _stratum(row: EpisodeResult) -> tuple[str, ...]:
-    return row.suite, row.suite_hash, *row.instance.stratum
+    return row.suite, row.suite_hash, *row.stratum
 
 
 def _insert(database: sqlite3.Connection, into: str, *values: Any) -> int:

@@ -33,7 +33,8 @@ def plans_of(row: EpisodeResult, longest_s: float = LONGEST_S) -> list[Plan]:
     Raises:
         ValueError, zlib.error: the row names what does not exist, or its log is damaged.
     """
-    if not is_shipped(row.policy) or not 0.0 < row.planning_seconds <= longest_s:
+    # Who plans is charged for evaluations; a rule that decides at every tick plans nothing.
+    if not is_shipped(row.policy) or not row.evaluations or row.planning_seconds > longest_s:
         return []
     policy: Any = policies.make(row.policy, row.policy_seed, **json.loads(row.parameters))
     flight = Flight(environment(replace(row.instance, seed=0)))

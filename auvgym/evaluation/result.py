@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from auvgym.evaluation.suite import Instance
+from auvgym.evaluation.suite import Instance, Stratum
 
 # How a policy, not the vehicle, can lose an episode.
 POLICY_FAILURES = ("error", "invalid_action", "overtime", "exit")
@@ -100,6 +100,11 @@ class EpisodeResult:
     def instance(self) -> Instance:
         """What was flown."""
         return Instance(self.environment, self.seed, self.difficulty, self.scenario, self.settings)
+
+    @property
+    def stratum(self) -> Stratum:
+        """What it is ranked together with: environment, difficulty, scenario, settings."""
+        return self.environment, self.difficulty, self.scenario, self.settings
 
     @property
     def policy_failed(self) -> bool:

@@ -104,7 +104,7 @@ def score_tables(results: Iterable[EpisodeResult]) -> list[Table]:
     strata: dict[Stratum, dict[Entrant, dict[Instance, float]]] = {}
     for row in results:
         entrant = (row.policy, row.policy_seed, row.parameters)
-        stratum = strata.setdefault(row.instance.stratum, {})
+        stratum = strata.setdefault(row.stratum, {})
         stratum.setdefault(entrant, {})[row.instance] = row.score
     tables = [_table(stratum, entrants) for stratum, entrants in sorted(strata.items())]
     if len(tables) > 1 and (together := _together(tables)):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from statistics import fmean
 
@@ -65,21 +65,25 @@ class PolicySummary:
         return self.policy, self.policy_seed, self.parameters
 
 
-def summarise(results: Iterable[EpisodeResult]) -> list[PolicySummary]:
+def summarise(
+    results: Iterable[EpisodeResult],
+    stratum_of: Callable[[EpisodeResult], Stratum] = lambda one: one.stratum,
+) -> list[PolicySummary]:
     """One summary per stratum and policy, best first: by mean score, then by episodes solved."""
     strata: dict[Stratum, dict[Entrant, list[EpisodeResult]]] = {}
     for result in results:
         entrant = (result.policy, result.policy_seed, result.parameters)
-        entrants = strata.setdefault(result.instance.stratum, {})
+        entrants = strata.setdefault(stratum_of(result), {})
         entrants.setdefault(entrant, []).append(result)
     summaries: list[PolicySummary] = []
-    for _, entrants in sorted(strata.items()):
+    for stratum, entrants in sorted(strata.items()):
         entries = [episodes for _, episodes in sorted(entrants.items())]
         entries.sort(key=_standing, reverse=True)
         standings = [_standing(episodes) for episodes in entries]
         # Equals share the better place: 1, 2, 2, 4.
         summaries += [
-            _summary(1 + standings.index(_standing(episodes)), episodes) for episodes in entries
+            _summary(stratum, 1 + standings.index(standing), episodes)
+            for standing, episodes in zip(standings, entries, strict=True)
         ]
     return summaries
 
@@ -95,15 +99,16 @@ def wilson_interval(solved: int, episodes: int) -> tuple[float, float]:
     return max(0.0, centre - half), min(1.0, centre + half)
 
 
-def _summary(rank: int, episodes: Sequence[EpisodeResult]) -> PolicySummary:
+def _summary(stratum: Stratum, rank: int, episodes: Sequence[EpisodeResult]) -> PolicySummary:
     first = episodes[0]
+    environment, difficulty, scenario, settings = stratum
     solved = [episode for episode in episodes if episode.success]
     low, high = wilson_interval(len(solved), len(episodes))
     return PolicySummary(
-        environment=first.environment,
-        difficulty=first.difficulty,
-        scenario=first.scenario,
-        settings=first.settings,
+        environment=environment,
+        difficulty=difficulty,
+        scenario=scenario,
+        settings=settings,
         policy=first.policy,
         policy_seed=first.policy_seed,
         parameters=first.parameters,
