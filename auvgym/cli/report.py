@@ -33,7 +33,7 @@ def report(
             help="How many policies of each table, from the top, have their median, best and worst "
             "episode to watch; -1: all. Each takes about 0.2 seconds and 0.7 megabytes."
         ),
-    ] = 3,
+    ] = 2,
     workers: Annotated[int, typer.Option(min=1, help="Processes to draw episodes in.")] = 1,
 ) -> None:
     """Write a board: index.html with tables, charts and episodes, board.md and board.tex.
@@ -48,7 +48,8 @@ def report(
     from auvgym.report.text_tables import latex, markdown
 
     rows = _rows(results, suite)
-    boards = board(rows, reference)
+    tables = score_tables(rows)
+    boards = board(rows, reference, tables)
     watched = _watched(rows, boards, replays)
     labels = {stratum: [label for label, _ in shown] for stratum, shown in watched.items()}
     episodes = [episode for stratum in boards for _, episode in watched.get(stratum, ())]
@@ -62,7 +63,7 @@ def report(
             _introduction(rows, reference),
             boards,
             {stratum: columns_of(stratum) for stratum in boards},
-            {table.stratum: table for table in score_tables(rows)},
+            {table.stratum: table for table in tables},
             labels,
             figures,
             lambda done, total: bar.update(drawn, completed=done, total=total),

@@ -4,11 +4,18 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 from auvgym.evaluation.result import EpisodeResult
-from auvgym.evaluation.statistics import OVERALL, Comparison, Estimate, compare
+from auvgym.evaluation.statistics import (
+    OVERALL,
+    Comparison,
+    Estimate,
+    Table,
+    compare_tables,
+    score_tables,
+)
 from auvgym.evaluation.suite import Stratum
 from auvgym.evaluation.summary import PolicySummary, summarise
 
@@ -30,7 +37,9 @@ class BoardColumn(NamedTuple):
 
 
 def board(
-    results: Iterable[EpisodeResult], reference: str | None = None
+    results: Iterable[EpisodeResult],
+    reference: str | None = None,
+    tables: Sequence[Table] | None = None,
 ) -> dict[Stratum, list[BoardRow]]:
     """The board of each stratum, best mean score first; with several, that of all of them last.
 
@@ -38,11 +47,15 @@ def board(
         results: episodes of one suite.
         reference: as of :func:`~auvgym.evaluation.statistics.compare`.
 
+        tables: the scores, as of :func:`~auvgym.evaluation.statistics.score_tables`, where they
+            are there already.
+
     Raises:
         ValueError, ImportError: as ``compare``.
     """
     rows = list(results)
-    compared = {(one.stratum, one.entrant): one for one in compare(rows, reference)}
+    found = compare_tables(score_tables(rows) if tables is None else tables, reference)
+    compared = {(one.stratum, one.entrant): one for one in found}
     everywhere = {entrant for stratum, entrant in compared if stratum == OVERALL}
     together = [row for row in rows if (row.policy, row.policy_seed, row.parameters) in everywhere]
     boards: dict[Stratum, list[BoardRow]] = {}

@@ -135,7 +135,17 @@ def compare(
         ValueError: the reference has flown nothing, or there is nothing to compare.
         ImportError: without scipy; says which extra brings it.
     """
-    tables = score_tables(results)
+    return compare_tables(score_tables(results), reference, resamples=resamples, seed=seed)
+
+
+def compare_tables(
+    tables: Sequence[Table],
+    reference: str | None = None,
+    *,
+    resamples: int = RESAMPLES,
+    seed: int = 0,
+) -> list[Comparison]:
+    """:func:`compare`, of the tables that :func:`score_tables` gives."""
     if not tables:
         raise ValueError("there are no episodes to compare")
     names = {entrant[0] for table in tables for entrant in table.entrants}

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from auvgym._extras import require
 from auvgym.rendering.axes import time_unit
 from auvgym.rendering.subjects import Points, World
 from auvgym.report import theme
@@ -23,45 +24,17 @@ Drawing = dict[str, Any]
 Plan = tuple[float, Points]
 
 
-def episode_figure(
-    worlds: Sequence[World],
-    trail: Points,
-    plan: Points | None = None,
-    *,
-    plans: Sequence[Plan] = (),
-    times_s: NDArray[np.float64] | None = None,
-    title: str | None = None,
-    subtitle: str = "",
-    frames: int = FRAMES,
-) -> Any:
-    """An interactive figure of a flown episode.
-
-    Args:
-        worlds: copies of the world as the episode met it, the first at its start and one after
-            each map change, in order of their ``time_s`` (what ``env.unwrapped.world`` gave).
-        trail: (k, 3) m, one point per flown tick.
-        plan: (n, 3) m, a planned way to show beside it.
-        plans: when each plan was made, s, and its way, (n, 3) m, in order: each is shown from then
-            to the next.
-        times_s: (k,) s of the trail's points; by default one tick of the scenario apart.
-        title: by default the scenario's name.
-        subtitle: a line below it.
-        frames: steps of the slider.
+def episode_figure(worlds: Sequence[World], trail: Points, **options: Any) -> Any:
+    """An interactive figure of a flown episode, of what :func:`episode_drawing` takes.
 
     Returns:
         A ``plotly.graph_objects.Figure`` with frames; :func:`auvgym.report.figure_page` or
         :func:`auvgym.report.leaderboard_page` make a page of it.
 
     Raises:
-        ValueError: no world, or a trail with fewer than two points or not three columns.
-        ImportError: without plotly; says which extra brings it.
+        ValueError, ImportError: as there.
     """
-    from auvgym._extras import require
-
-    drawing = episode_drawing(
-        worlds, trail, plan, plans=plans, times_s=times_s, title=title, subtitle=subtitle,
-        frames=frames,
-    )  # fmt: skip
+    drawing = episode_drawing(worlds, trail, **options)
     return require("plotly.graph_objects", "report").Figure(drawing)
 
 
@@ -76,10 +49,23 @@ def episode_drawing(
     subtitle: str = "",
     frames: int = FRAMES,
 ) -> Drawing:
-    """:func:`episode_figure` as the dict that plotly.js reads: its checks take most of the time.
+    """A flown episode as the dict that plotly.js reads, without the checks of Python's plotly.
+
+    Args:
+        worlds: copies of the world as the episode met it, the first at its start and one after
+            each map change, in order of their ``time_s`` (what ``env.unwrapped.world`` gave).
+        trail: (k, 3) m, one point per flown tick.
+        plan: (n, 3) m, a planned way to show beside it.
+        plans: when each plan was made, s, and its way, (n, 3) m, in order: each is shown from then
+            to the next.
+        times_s: (k,) s of the trail's points; by default one tick of the scenario apart.
+        title: by default the scenario's name.
+        subtitle: a line below it.
+        frames: steps of the slider.
 
     Raises:
-        ValueError, ImportError: as there.
+        ValueError: no world, or a trail with fewer than two points or not three columns.
+        ImportError: without plotly; says which extra brings it.
     """
     way = np.asarray(trail, dtype=np.float64)
     if not len(worlds):

@@ -12,14 +12,14 @@ from auvgym.training.config import TrainingConfig
 from auvgym.training.curve import Curve, Row
 from auvgym.training.export import export_onnx
 from auvgym.training.folder import TrainingFolder
-from auvgym.training.models import load_model
+from auvgym.training.models import algorithm_class
 
 
 def write_agent(
     place: TrainingFolder, config: TrainingConfig, state: dict[str, Any], curve: Curve
 ) -> None:
     """Write the best network of a training as ``agent.onnx``, and its card ``agent.json``."""
-    model = load_model(config, place.model("best"))
+    model = algorithm_class(config.algorithm).load(place.model("best"), device="cpu")
     statistics = place.statistics_of("best")
     normalizer = None if statistics is None else _read_statistics(statistics)
     difference = export_onnx(model, place.onnx, normalizer, config.least_waypoint)

@@ -87,7 +87,9 @@ class TrainingFolder:
 
     def save_model(self, which: str, model: Any) -> None:
         """Write a model and its normalisation, each whole or not at all."""
-        _replace(self.model(which), lambda path: model.save(path))
+        # Stable-Baselines3 chooses the class of the replay buffer anew, and takes the one that it
+        # has chosen before for one's own, with a warning.
+        _replace(self.model(which), lambda path: model.save(path, exclude=["replay_buffer_class"]))
         normalizer = model.get_vec_normalize_env()
         if normalizer is not None:
             _replace(self.statistics(which), lambda path: normalizer.save(str(path)))

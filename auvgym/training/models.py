@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import warnings
 from pathlib import Path
 from typing import Any
 
@@ -51,15 +50,6 @@ def algorithm_class(algorithm: str) -> Any:
     """
     module, name = CLASSES[algorithm]
     return getattr(require(module, "train"), name)
-
-
-def load_model(config: TrainingConfig, path: Path, envs: Any = None) -> Any:
-    """A model that a training has saved."""
-    with warnings.catch_warnings():
-        # It is saved with the buffer for returns over n steps, which Stable-Baselines3 takes for
-        # a buffer of one's own.
-        warnings.filterwarnings("ignore", message="`n_steps=")
-        return algorithm_class(config.algorithm).load(path, env=envs, device="cpu")
 
 
 def make_envs(config: TrainingConfig, statistics: Path | None, flown: int = 0) -> Any:

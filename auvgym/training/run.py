@@ -182,7 +182,8 @@ class _Run:
         statistics = place.statistics_of("last") if self.part else None
         envs = models.make_envs(config, statistics, self.state["timesteps"])
         if self.part:
-            model = models.load_model(config, place.model("last"), envs)
+            maker = models.algorithm_class(config.algorithm)
+            model = maker.load(place.model("last"), env=envs, device="cpu")
             if place.replay_buffer.is_file():
                 model.load_replay_buffer(place.replay_buffer)
             model.set_random_seed(config.seed + self.part)
