@@ -129,14 +129,17 @@ class AUVVecEnv(VecEnv):  # type: ignore[misc]  # SB3 is not looked into
         self._reset_seeds()
         self._reset_options()
         self._returns[:], self._lengths[:] = 0.0, 0
-        self.reset_infos = [self._row(infos, index) for index in range(self.num_envs)]
+        self.reset_infos = self._rows(infos, np.arange(self.num_envs))
         return observations
 
     @staticmethod
-    def _row(columns: dict[str, npt.NDArray[Any]], index: int) -> dict[str, Any]:
-        """One environment's info out of everybody's."""
-        named = ((name, column) for name, column in columns.items() if not name.startswith("_"))
-        return {name: column[index : index + 1].tolist()[0] for name, column in named}
+    def _rows(
+        columns: dict[str, npt.NDArray[Any]], indices: npt.NDArray[np.intp]
+    ) -> list[dict[str, Any]]:
+        """The infos of some environments out of everybody's."""
+        named = {name: column for name, column in columns.items() if not name.startswith("_")}
+        values = zip(*(column[indices].tolist() for column in named.values()), strict=True)
+        return [dict(zip(named, row, strict=True)) for row in values]
 
     def step_async(self, actions: npt.NDArray[Any]) -> None:
         """Take the actions, (n, d)."""
@@ -162,16 +165,19 @@ class AUVVecEnv(VecEnv):  # type: ignore[misc]  # SB3 is not looked into
         self._returns += rewards
         self._lengths += 1
         infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
-        over = np.flatnonzero(ended).tolist()
-        if over:
-            last, now = self.envs.columns(last=True), self.envs.columns()
-            for index in over:
-                infos[index] = self._ended(self._row(last, index), index)
-                begun = {**self._row(now, index), "episode_seed": int(seeds[index])}
-                self.reset_infos[index] = begun
+        over = ended.nonzero()[0]
+        if over.size:
+            ends = self._rows(self.envs.columns(last=True), over)
+            begins = self._rows(self.envs.columns(), over)
+            looks = self.envs.last_observations(over)
+            for index, end, look, begin in zip(over.tolist(), ends, looks, begins, strict=True):
+                infos[index] = self._ended(end, index, look)
+                self.reset_infos[index] = {**begin, "episode_seed": int(seeds[index])}
         return observations, rewards.astype(np.float32), ended, infos
 
-    def _ended(self, info: dict[str, Any], index: int) -> dict[str, Any]:
+    def _ended(
+        self, info: dict[str, Any], index: int, look: npt.NDArray[np.float32]
+    ) -> dict[str, Any]:
         """The info of an episode that has just ended; its sums begin anew."""
         episode = {
             "r": round(float(self._returns[index]), 6),
@@ -182,11 +188,10 @@ class AUVVecEnv(VecEnv):  # type: ignore[misc]  # SB3 is not looked into
         self._returns[index], self._lengths[index] = 0.0, 0
         if self._writer is not None:
             self._writer.write_row(episode)
-        terminal = self.envs.last_observation(index)
         return {
             **info,
             "episode": episode,
-            "terminal_observation": terminal,
+            "terminal_observation": look,
             "TimeLimit.truncated": False,
         }
 

@@ -25,7 +25,8 @@ Observations: TypeAlias = npt.NDArray[np.float32]
 Flags: TypeAlias = npt.NDArray[np.bool_]
 Steps: TypeAlias = tuple[Observations, npt.NDArray[np.float64], Flags, Flags, dict[str, Any]]
 
-OUTCOMES = np.array(_core.outcomes(), dtype=object)
+#: By the engine's number; the last is that of an environment which does not count.
+OUTCOMES = np.array([*_core.outcomes(), None], dtype=object)
 
 
 class AUVVectorEnv(gymnasium.vector.VectorEnv[Observations, npt.ArrayLike, npt.NDArray[Any]]):
@@ -146,7 +147,7 @@ class AUVVectorEnv(gymnasium.vector.VectorEnv[Observations, npt.ArrayLike, npt.N
         self._seeds.used(which[drawn[which]])
         self._ended = self._ended & ~mask
         self._running = True
-        return observations, self._infos(mask, begun, everywhere=mask)
+        return observations, self._infos(mask.copy(), begun, everywhere=mask)
 
     def step(self, actions: npt.ArrayLike) -> Steps:
         """Fly one leg in every environment.
@@ -168,11 +169,13 @@ class AUVVectorEnv(gymnasium.vector.VectorEnv[Observations, npt.ArrayLike, npt.N
         infos = self._infos(begun, seeds)
         if self.autoreset_mode is AutoresetMode.SAME_STEP and ended.any():
             last = np.full(self.num_envs, None, dtype=object)
-            for index in np.flatnonzero(ended).tolist():
-                last[index] = self.last_observation(index)
+            over = ended.nonzero()[0]
+            for index, row in zip(over.tolist(), self.last_observations(over), strict=True):
+                last[index] = row
             infos["final_obs"], infos["_final_obs"] = last, ended.copy()
-            infos["final_info"], infos["_final_info"] = self._final_info(ended), ended.copy()
-        return observations, rewards, ended, np.zeros_like(ended), infos
+            infos["final_info"] = self._with_masks(self.columns(last=True, only=ended), ended.copy())
+            infos["_final_info"] = ended.copy()
+        return observations, rewards, ended, self._none(), infos
 
     def advance(
         self, actions: npt.ArrayLike
@@ -201,15 +204,20 @@ class AUVVectorEnv(gymnasium.vector.VectorEnv[Observations, npt.ArrayLike, npt.N
         except ActionError:
             self._running = True
             raise
-        began = {
-            AutoresetMode.NEXT_STEP: self._ended,
-            AutoresetMode.SAME_STEP: ended,
-            AutoresetMode.DISABLED: np.zeros_like(ended),
-        }[self.autoreset_mode].copy()
-        self._seeds.used(np.flatnonzero(began))
+        match self.autoreset_mode:
+            case AutoresetMode.NEXT_STEP:
+                began = self._ended
+            case AutoresetMode.SAME_STEP:
+                began = ended.copy()
+            case AutoresetMode.DISABLED:
+                began = self._none()
+        self._seeds.used(began.nonzero()[0])
         self._ended = ended.copy()
         self._running = True
         return observations, rewards, ended, began, seeds
+
+    def _none(self) -> Flags:
+        return np.zeros(self.num_envs, np.bool_)
 
     def _as_float32(self, actions: Any) -> Observations:
         """Actions as the engine takes them."""
@@ -229,30 +237,28 @@ class AUVVectorEnv(gymnasium.vector.VectorEnv[Observations, npt.ArrayLike, npt.N
         with np.errstate(over="ignore"):
             return np.ascontiguousarray(array, dtype=np.float32)
 
-    def columns(self, last: bool = False) -> dict[str, npt.NDArray[Any]]:
-        """What is measured, by name an array (n,): now, or when the ``last`` episodes ended."""
-        info = self._batch.info(last)
+    def columns(self, last: bool = False, only: Flags | None = None) -> dict[str, Any]:
+        """What is measured, by name an array (n,): now, or when the ``last`` episodes ended.
+
+        Where ``only`` is false there is zero, False or None instead, as Gymnasium fills them.
+        """
+        info = self._batch.info(last, only)
         info["outcome"] = OUTCOMES[info["outcome"]]
         return info
+
+    @staticmethod
+    def _with_masks(columns: dict[str, Any], mask: Flags) -> dict[str, Any]:
+        columns.update({f"_{name}": mask for name in list(columns)})
+        return columns
 
     def _infos(
         self, begun: Flags, seeds: npt.NDArray[np.uint64], everywhere: Flags | None = None
     ) -> dict[str, Any]:
-        columns: dict[str, Any] = self.columns()
-        if everywhere is None or everywhere.all():
-            mask = np.ones(self.num_envs, np.bool_)
-        else:
-            mask = everywhere.copy()
-            columns = _only(columns, mask)
-        columns.update({f"_{name}": mask for name in list(columns)})
+        mask = np.ones(self.num_envs, np.bool_) if everywhere is None else everywhere.copy()
+        columns = self._with_masks(self.columns(only=everywhere), mask)
         if begun.any():
             columns["episode_seed"] = np.where(begun, seeds, np.uint64(0))
-            columns["_episode_seed"] = begun.copy()
-        return columns
-
-    def _final_info(self, ended: Flags) -> dict[str, Any]:
-        columns: dict[str, Any] = _only(self.columns(last=True), ended)
-        columns.update({f"_{name}": ended.copy() for name in list(columns)})
+            columns["_episode_seed"] = begun
         return columns
 
     def episode(self, index: int) -> _core.Episode:
@@ -265,9 +271,13 @@ class AUVVectorEnv(gymnasium.vector.VectorEnv[Observations, npt.ArrayLike, npt.N
             raise ResetNeeded("call reset() first: there is no episode yet")
         return self._batch.episode(index)
 
-    def last_observation(self, index: int) -> Observations:
-        """What environment ``index`` saw last in its last episode, (k,) float32 (same-step)."""
-        return self._batch.last_observation(index)
+    def last_observations(self, indices: npt.NDArray[np.intp]) -> Observations:
+        """What the m environments ``indices`` saw last in their last episodes, (m, k) float32.
+
+        Raises:
+            IndexError: if one has not ended an episode in the same step yet.
+        """
+        return self._batch.last_observations(indices.astype(np.int64, copy=False))
 
     def charge(self, index: int, evaluations: int = 0, replans: int = 0) -> None:
         """Charge planning to the episode of environment ``index``: counted in its info."""
@@ -360,10 +370,3 @@ def _mask(mask: Any, count: int) -> Flags:
         raise ValueError("reset_mask: must be true somewhere")
     return mask
 
-
-def _only(columns: dict[str, Any], mask: Flags) -> dict[str, Any]:
-    """Columns whose other entries are zero, False or None, as Gymnasium fills them."""
-    return {
-        name: np.where(mask, values, np.zeros((), values.dtype) if values.dtype != object else None)
-        for name, values in columns.items()
-    }

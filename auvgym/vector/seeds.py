@@ -9,6 +9,10 @@ import numpy.typing as npt
 from gymnasium.utils import seeding
 
 
+#: Drawn together, since a call of the generator takes longer than its draws.
+_AT_ONCE = 32
+
+
 class EpisodeSeeds:
     """A random generator for each environment, and the seed of the episode that it begins next."""
 
@@ -16,25 +20,25 @@ class EpisodeSeeds:
         self._generators: list[np.random.Generator | None] = [None] * count
         #: (n,) uint64: always drawn already, so that the engine can begin an episode by itself.
         self.next: npt.NDArray[np.uint64] = np.zeros(count, np.uint64)
-
-    def _draw(self, index: int) -> None:
-        generator = self._generators[index]
-        if generator is None:
-            self._generators[index] = generator = seeding.np_random()[0]
-        # As ``AUVEnv.reset`` draws.
-        self.next[index] = generator.integers(0, 2**63)
+        #: What each generator has drawn ahead, and how many of those are used.
+        self._ahead: npt.NDArray[np.uint64] = np.zeros((count, _AT_ONCE), np.uint64)
+        self._taken: npt.NDArray[np.intp] = np.full(count, _AT_ONCE, np.intp)
 
     def seed(self, seeds: Sequence[int | None], which: npt.NDArray[np.intp]) -> None:
         """Seed the generators of ``which``; those whose seed is None go on as they were."""
-        for index in which.tolist():
-            seed = seeds[index]
-            if seed is not None:
-                self._generators[index] = seeding.np_random(int(seed))[0]
-                self._draw(index)
-            elif self._generators[index] is None:
-                self._draw(index)
+        anew = [i for i in which.tolist() if seeds[i] is not None or self._generators[i] is None]
+        for index in anew:
+            self._generators[index] = seeding.np_random(seeds[index])[0]
+        self._taken[anew] = _AT_ONCE
+        self.used(np.array(anew, np.intp))
 
     def used(self, which: npt.NDArray[np.intp]) -> None:
         """Draw anew for those whose seed has been used."""
-        for index in which.tolist():
-            self._draw(index)
+        for index in which[self._taken[which] == _AT_ONCE].tolist():
+            generator = self._generators[index]
+            assert generator is not None, "seeded before the first episode"
+            # As ``AUVEnv.reset`` draws, one after another.
+            self._ahead[index] = generator.integers(0, 2**63, _AT_ONCE)
+            self._taken[index] = 0
+        self.next[which] = self._ahead[which, self._taken[which]]
+        self._taken[which] += 1

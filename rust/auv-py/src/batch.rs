@@ -1,10 +1,12 @@
 //! `Batch`: many episodes at once.
 
+use auv_env::batch::Lane;
 use auv_env::measures::{Measures, Record};
 use auv_env::observation::Mode;
 use auv_env::{Autoreset, Outcome};
 use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -50,8 +52,13 @@ impl Batch {
     }
 }
 
-fn column<'py, R, T: Element>(py: Python<'py>, rows: &[R], value: impl Fn(&R) -> T) -> Bound<'py, PyArray1<T>> {
-    PyArray1::from_iter(py, rows.iter().map(value))
+/// A value of each row, or its type's zero where there is no row.
+fn column<'py, T: Element + Default>(
+    py: Python<'py>,
+    rows: &[Option<Measures>],
+    value: impl Fn(&Measures) -> T,
+) -> Bound<'py, PyArray1<T>> {
+    PyArray1::from_iter(py, rows.iter().map(|row| row.as_ref().map(&value).unwrap_or_default()))
 }
 
 fn missing(index: usize) -> PyErr {
@@ -107,39 +114,77 @@ impl Batch {
         self.expect("seeds", seeds.len(), 1)?;
         let observations = self.fill(py, |batch, rows, stop| batch.step(actions, seeds, rows, stop))?;
         let lanes = self.0.lanes();
-        Ok((observations, column(py, lanes, |lane| lane.reward), column(py, lanes, |lane| lane.ended)))
+        let rewards = PyArray1::from_iter(py, lanes.iter().map(|lane| lane.reward));
+        Ok((observations, rewards, PyArray1::from_iter(py, lanes.iter().map(|lane| lane.ended))))
     }
 
-    /// What is measured, a column each: now, or when the `last` episode ended.
-    fn info<'py>(&self, py: Python<'py>, last: bool) -> PyResult<Bound<'py, PyDict>> {
-        let lanes = self.0.lanes().iter();
+    /// What is measured, a column each: now, or when the `last` episode ended. Where `only` is false zeros stand
+    /// instead, and in `outcome` the number behind the last of [`outcomes`].
+    #[pyo3(signature = (last, only=None))]
+    fn info<'py>(
+        &self,
+        py: Python<'py>,
+        last: bool,
+        only: Option<PyReadonlyArray1<'py, bool>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let only = only.as_ref().map(|only| only.as_slice()).transpose()?;
+        let lanes = self.0.lanes();
+        self.expect("only", only.map_or(lanes.len(), <[bool]>::len), 1)?;
+        let counts = |index: usize| only.is_none_or(|only| only[index]);
+        let of = |(index, lane): (usize, &Lane)| counts(index).then_some(if last { lane.last } else { lane.now });
         // Side by side first: environments lie far apart.
-        let rows: Vec<Measures> = lanes.map(|lane| if last { lane.last } else { lane.now }).collect();
+        let rows: Vec<Option<Measures>> = lanes.iter().enumerate().map(of).collect();
         let info = PyDict::new(py);
-        info.set_item("time_s", column(py, &rows, |row| row.time_s))?;
-        info.set_item("energy_j", column(py, &rows, |row| row.energy_j))?;
-        info.set_item("path_length_m", column(py, &rows, |row| row.path_length_m))?;
-        info.set_item("min_clearance_m", column(py, &rows, |row| row.min_clearance_m))?;
-        info.set_item("distance_to_goal_m", column(py, &rows, |row| row.distance_to_goal_m))?;
-        info.set_item("evaluations", column(py, &rows, |row| row.evaluations as i64))?;
-        info.set_item("replans", column(py, &rows, |row| row.replans as i64))?;
-        info.set_item("map_changes", column(py, &rows, |row| row.map_changes as i64))?;
-        info.set_item("map_changed", column(py, &rows, |row| row.map_changed))?;
-        info.set_item("is_success", column(py, &rows, |row| row.outcome == Outcome::Goal))?;
-        let code = |row: &Measures| OUTCOMES.iter().position(|outcome| *outcome == row.outcome).unwrap_or(0) as i64;
-        info.set_item("outcome", column(py, &rows, code))?;
+        macro_rules! columns {
+            ($($name:ident: $value:expr),* $(,)?) => {
+                $(info.set_item(intern!(py, stringify!($name)), column(py, &rows, $value))?;)*
+            };
+        }
+        columns! {
+            time_s: |row| row.time_s,
+            energy_j: |row| row.energy_j,
+            path_length_m: |row| row.path_length_m,
+            min_clearance_m: |row| row.min_clearance_m,
+            distance_to_goal_m: |row| row.distance_to_goal_m,
+            evaluations: |row| row.evaluations as i64,
+            replans: |row| row.replans as i64,
+            map_changes: |row| row.map_changes as i64,
+            map_changed: |row| row.map_changed,
+            is_success: |row| row.outcome == Outcome::Goal,
+        }
+        let code = |row: &Option<Measures>| {
+            let known = row.and_then(|row| OUTCOMES.iter().position(|outcome| *outcome == row.outcome));
+            known.unwrap_or(OUTCOMES.len()) as i64
+        };
+        info.set_item(intern!(py, "outcome"), PyArray1::from_iter(py, rows.iter().map(code)))?;
         if self.0.mode() == Mode::Replan {
-            info.set_item("planning_s", column(py, &rows, |row| row.planning_s))?;
-            info.set_item("failed_plans", column(py, &rows, |row| row.failed_plans as i64))?;
-            info.set_item("plan_feasible", column(py, &rows, |row| row.plan_feasible))?;
+            columns! {
+                planning_s: |row| row.planning_s,
+                failed_plans: |row| row.failed_plans as i64,
+                plan_feasible: |row| row.plan_feasible,
+            }
         }
         Ok(info)
     }
 
-    /// The last observation of environment `index`'s last episode.
-    fn last_observation<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let lane = self.0.lanes().get(index).ok_or_else(|| missing(index))?;
-        Ok(PyArray1::from_slice(py, &lane.last_observation))
+    /// The last observations of the last episodes of some environments, a row each.
+    fn last_observations<'py>(
+        &self,
+        py: Python<'py>,
+        indices: PyReadonlyArray1<'py, i64>,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let (indices, width) = (indices.as_slice()?, self.0.observation_len());
+        let array = PyArray2::zeros(py, [indices.len(), width], false);
+        let mut view = array.try_readwrite()?;
+        for (&index, row) in indices.iter().zip(view.as_slice_mut()?.chunks_exact_mut(width)) {
+            let lane = usize::try_from(index).ok().and_then(|index| self.0.lanes().get(index));
+            let last = lane.map(|lane| &lane.last_observation[..]).filter(|last| last.len() == width);
+            row.copy_from_slice(
+                last.ok_or_else(|| PyIndexError::new_err(format!("no ended episode of environment {index}")))?,
+            );
+        }
+        drop(view);
+        Ok(array)
     }
 
     /// A copy of environment `index`'s episode.

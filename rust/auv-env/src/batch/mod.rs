@@ -35,6 +35,10 @@ pub enum Autoreset {
 /// Environments between two looks at whether to stop.
 const AT_ONCE: usize = 1024;
 
+/// Environments that a thread takes at a time, at most: legs and new worlds differ so much in length that with
+/// more of them threads would wait for each other at the end of a step.
+const BY_ONE_THREAD: usize = 4;
+
 /// Many environments.
 #[derive(Debug)]
 pub struct Batch {
@@ -172,7 +176,8 @@ impl Batch {
                     let one = |(i, (lane, row)): (usize, (&mut Lane, &mut [f32]))| {
                         work(first + i, lane, row, &Control::flag(&stopped));
                     };
-                    let all = || lanes.par_iter_mut().zip(rows.par_chunks_exact_mut(width)).enumerate().for_each(one);
+                    let rows = rows.par_chunks_exact_mut(width);
+                    let all = || lanes.par_iter_mut().zip(rows).enumerate().with_max_len(BY_ONE_THREAD).for_each(one);
                     pool::watched(threads, &stopped, stop, all);
                 }
             }
