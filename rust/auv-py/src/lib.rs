@@ -15,6 +15,9 @@ mod world;
 
 use pyo3::prelude::*;
 
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 /// The compiled engine of auvgym.
 #[pymodule]
 mod _core {
