@@ -129,17 +129,10 @@ class AUVVecEnv(VecEnv):  # type: ignore[misc]  # SB3 is not looked into
         self._reset_seeds()
         self._reset_options()
         self._returns[:], self._lengths[:] = 0.0, 0
-        self.reset_infos = self._rows(infos, np.arange(self.num_envs))
+        rows = self.envs.rows(np.arange(self.num_envs))
+        begun = zip(rows, infos["episode_seed"].tolist(), strict=True)
+        self.reset_infos = [{**row, "episode_seed": seed} for row, seed in begun]
         return observations
-
-    @staticmethod
-    def _rows(
-        columns: dict[str, npt.NDArray[Any]], indices: npt.NDArray[np.intp]
-    ) -> list[dict[str, Any]]:
-        """The infos of some environments out of everybody's."""
-        named = {name: column for name, column in columns.items() if not name.startswith("_")}
-        values = zip(*(column[indices].tolist() for column in named.values()), strict=True)
-        return [dict(zip(named, row, strict=True)) for row in values]
 
     def step_async(self, actions: npt.NDArray[Any]) -> None:
         """Take the actions, (n, d)."""
@@ -167,33 +160,33 @@ class AUVVecEnv(VecEnv):  # type: ignore[misc]  # SB3 is not looked into
         infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
         over = ended.nonzero()[0]
         if over.size:
-            ends = self._rows(self.envs.columns(last=True), over)
-            begins = self._rows(self.envs.columns(), over)
-            looks = self.envs.last_observations(over)
-            for index, end, look, begin in zip(over.tolist(), ends, looks, begins, strict=True):
-                infos[index] = self._ended(end, index, look)
-                self.reset_infos[index] = {**begin, "episode_seed": int(seeds[index])}
+            self._end(over, seeds, infos)
         return observations, rewards.astype(np.float32), ended, infos
 
-    def _ended(
-        self, info: dict[str, Any], index: int, look: npt.NDArray[np.float32]
-    ) -> dict[str, Any]:
-        """The info of an episode that has just ended; its sums begin anew."""
-        episode = {
-            "r": round(float(self._returns[index]), 6),
-            "l": int(self._lengths[index]),
-            "t": round(time.time() - self._start, 6),
-            **{key: info[key] for key in self._info_keywords},
-        }
-        self._returns[index], self._lengths[index] = 0.0, 0
-        if self._writer is not None:
-            self._writer.write_row(episode)
-        return {
-            **info,
-            "episode": episode,
-            "terminal_observation": look,
-            "TimeLimit.truncated": False,
-        }
+    def _end(
+        self,
+        over: npt.NDArray[np.intp],
+        seeds: npt.NDArray[np.uint64],
+        infos: list[dict[str, Any]],
+    ) -> None:
+        """Fill in the infos of the episodes that have just ended; their sums begin anew."""
+        elapsed = round(time.time() - self._start, 6)
+        sums = zip(self._returns[over].tolist(), self._lengths[over].tolist(), strict=True)
+        self._returns[over], self._lengths[over] = 0.0, 0
+        looks, seeds_used = self.envs.last_observations(over), seeds[over].tolist()
+        ends, begins = self.envs.rows(over, last=True), self.envs.rows(over)
+        for at, (index, (reward, length)) in enumerate(zip(over.tolist(), sums, strict=True)):
+            chosen = {key: ends[at][key] for key in self._info_keywords}
+            episode = {"r": round(reward, 6), "l": length, "t": elapsed, **chosen}
+            if self._writer is not None:
+                self._writer.write_row(episode)
+            infos[index] = {
+                **ends[at],
+                "episode": episode,
+                "terminal_observation": looks[at],
+                "TimeLimit.truncated": False,
+            }
+            self.reset_infos[index] = {**begins[at], "episode_seed": seeds_used[at]}
 
     def close(self) -> None:
         """Close file and pictures."""

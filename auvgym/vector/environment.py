@@ -246,6 +246,10 @@ class AUVVectorEnv(gymnasium.vector.VectorEnv[Observations, npt.ArrayLike, npt.N
         info["outcome"] = OUTCOMES[info["outcome"]]
         return info
 
+    def rows(self, indices: npt.NDArray[np.intp], last: bool = False) -> list[dict[str, Any]]:
+        """What is measured of the environments ``indices``, each as alone: now, or of the ``last``."""
+        return self._batch.infos(indices.astype(np.int64, copy=False), last)
+
     @staticmethod
     def _with_masks(columns: dict[str, Any], mask: Flags) -> dict[str, Any]:
         columns.update({f"_{name}": mask for name in list(columns)})

@@ -10,7 +10,7 @@ from gymnasium.utils import seeding
 
 
 #: Drawn together, since a call of the generator takes longer than its draws.
-_AT_ONCE = 32
+_AT_ONCE = 128
 
 
 class EpisodeSeeds:

@@ -84,5 +84,5 @@ fn sonar(bencher: divan::Bencher, family: &str) {
     let mut ranges = vec![0.0; beams.len()];
     let mut scratch = auv_world::world::Scratch::default();
     let position = episode.state().position;
-    bencher.bench_local(|| world.sonar(position, &beams, 5000.0, &mut scratch, &mut ranges));
+    bencher.bench_local(|| world.sonar(position, beams, 5000.0, &mut scratch, &mut ranges));
 }

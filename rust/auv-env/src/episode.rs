@@ -68,7 +68,7 @@ pub struct Episode {
     record: Record,
     /// Who flies a plan, in re-plan mode.
     pilot: Option<Box<Pilot>>,
-    beams: Vec<Vec3>,
+    beams: &'static [Vec3],
     turned: Vec<Vec3>,
     ranges: Vec<f64>,
     scratch: Scratch,
@@ -127,7 +127,6 @@ impl Episode {
         let flat = scenario.dimensions == 2;
         let helm = Helm::new(vehicle, scenario.episode.tick_s, scenario.episode.station_radius_m, flat);
         let beams = sonar::beams(scenario.dimensions);
-        let count = beams.len();
         Self {
             world,
             limits,
@@ -135,9 +134,9 @@ impl Episode {
             state,
             record: Record::Everything,
             pilot: None,
-            turned: beams.clone(),
+            turned: beams.to_vec(),
+            ranges: vec![0.0; beams.len()],
             beams,
-            ranges: vec![0.0; count],
             scratch: Scratch::default(),
         }
     }
@@ -447,7 +446,7 @@ impl Episode {
     /// Writes what the vehicle sees now; `values` as long as [`observation::length`] says.
     pub fn observe(&mut self, values: &mut [f32]) {
         let frame = self.frame();
-        for (turned, beam) in self.turned.iter_mut().zip(&self.beams) {
+        for (turned, beam) in self.turned.iter_mut().zip(self.beams) {
             *turned = frame.to_world(*beam);
         }
         let range = self.world.scenario().episode.sonar_range_m;

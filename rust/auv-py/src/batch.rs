@@ -1,27 +1,17 @@
 //! `Batch`: many episodes at once.
 
+use auv_env::Autoreset;
 use auv_env::batch::Lane;
 use auv_env::measures::{Measures, Record};
-use auv_env::observation::Mode;
-use auv_env::{Autoreset, Outcome};
-use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyIndexError, PyValueError};
-use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::episode::{Episode, Source};
 use crate::errors;
+use crate::info;
 use crate::interrupt::Signals;
-
-/// Names of outcomes; a batch's `outcome` is an index into them.
-#[pyfunction]
-pub fn outcomes() -> Vec<&'static str> {
-    OUTCOMES.map(Outcome::name).to_vec()
-}
-
-const OUTCOMES: [Outcome; 6] =
-    [Outcome::Running, Outcome::Goal, Outcome::Collision, Outcome::OutOfBounds, Outcome::Energy, Outcome::Timeout];
 
 /// Many episodes at once.
 #[pyclass(module = "auvgym._core")]
@@ -30,6 +20,11 @@ pub struct Batch(auv_env::Batch);
 type Stepped<'py> = (Bound<'py, PyArray2<f32>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<bool>>);
 
 impl Batch {
+    fn lane(&self, index: i64) -> PyResult<&Lane> {
+        let lane = usize::try_from(index).ok().and_then(|index| self.0.lanes().get(index));
+        lane.ok_or_else(|| missing(index))
+    }
+
     fn at(&self, index: usize) -> PyResult<&auv_env::Episode> {
         self.0.episode(index).ok_or_else(|| missing(index))
     }
@@ -52,16 +47,7 @@ impl Batch {
     }
 }
 
-/// A value of each row, or its type's zero where there is no row.
-fn column<'py, T: Element + Default>(
-    py: Python<'py>,
-    rows: &[Option<Measures>],
-    value: impl Fn(&Measures) -> T,
-) -> Bound<'py, PyArray1<T>> {
-    PyArray1::from_iter(py, rows.iter().map(|row| row.as_ref().map(&value).unwrap_or_default()))
-}
-
-fn missing(index: usize) -> PyErr {
+fn missing(index: impl std::fmt::Display) -> PyErr {
     PyIndexError::new_err(format!("no episode of environment {index}"))
 }
 
@@ -134,37 +120,21 @@ impl Batch {
         let of = |(index, lane): (usize, &Lane)| counts(index).then_some(if last { lane.last } else { lane.now });
         // Side by side first: environments lie far apart.
         let rows: Vec<Option<Measures>> = lanes.iter().enumerate().map(of).collect();
-        let info = PyDict::new(py);
-        macro_rules! columns {
-            ($($name:ident: $value:expr),* $(,)?) => {
-                $(info.set_item(intern!(py, stringify!($name)), column(py, &rows, $value))?;)*
-            };
-        }
-        columns! {
-            time_s: |row| row.time_s,
-            energy_j: |row| row.energy_j,
-            path_length_m: |row| row.path_length_m,
-            min_clearance_m: |row| row.min_clearance_m,
-            distance_to_goal_m: |row| row.distance_to_goal_m,
-            evaluations: |row| row.evaluations as i64,
-            replans: |row| row.replans as i64,
-            map_changes: |row| row.map_changes as i64,
-            map_changed: |row| row.map_changed,
-            is_success: |row| row.outcome == Outcome::Goal,
-        }
-        let code = |row: &Option<Measures>| {
-            let known = row.and_then(|row| OUTCOMES.iter().position(|outcome| *outcome == row.outcome));
-            known.unwrap_or(OUTCOMES.len()) as i64
+        info::columns(py, &rows, self.0.mode())
+    }
+
+    /// What is measured of some environments, a dict each: now, or when the `last` episode ended.
+    fn infos<'py>(
+        &self,
+        py: Python<'py>,
+        indices: PyReadonlyArray1<'py, i64>,
+        last: bool,
+    ) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let one = |&index: &i64| {
+            let lane = self.lane(index)?;
+            info::one(py, if last { &lane.last } else { &lane.now }, self.0.mode())
         };
-        info.set_item(intern!(py, "outcome"), PyArray1::from_iter(py, rows.iter().map(code)))?;
-        if self.0.mode() == Mode::Replan {
-            columns! {
-                planning_s: |row| row.planning_s,
-                failed_plans: |row| row.failed_plans as i64,
-                plan_feasible: |row| row.plan_feasible,
-            }
-        }
-        Ok(info)
+        indices.as_slice()?.iter().map(one).collect()
     }
 
     /// The last observations of the last episodes of some environments, a row each.
@@ -177,11 +147,11 @@ impl Batch {
         let array = PyArray2::zeros(py, [indices.len(), width], false);
         let mut view = array.try_readwrite()?;
         for (&index, row) in indices.iter().zip(view.as_slice_mut()?.chunks_exact_mut(width)) {
-            let lane = usize::try_from(index).ok().and_then(|index| self.0.lanes().get(index));
-            let last = lane.map(|lane| &lane.last_observation[..]).filter(|last| last.len() == width);
-            row.copy_from_slice(
-                last.ok_or_else(|| PyIndexError::new_err(format!("no ended episode of environment {index}")))?,
-            );
+            let last = &self.lane(index)?.last_observation;
+            if last.len() != width {
+                return Err(missing(index));
+            }
+            row.copy_from_slice(last);
         }
         drop(view);
         Ok(array)

@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::errors;
+use crate::info;
 use crate::interrupt;
 use crate::points;
 use crate::scenario::{Scenario, parameters};
@@ -27,7 +28,7 @@ pub fn observation_layout(dimensions: u8, replan: bool) -> Vec<(&'static str, us
 /// Unit vectors (forward, left, up) of the sonar's beams, (beams, 3).
 #[pyfunction]
 pub fn sonar_directions(py: Python<'_>, dimensions: u8) -> PyResult<Bound<'_, PyArray2<f64>>> {
-    points::table(py, &auv_env::sonar::beams(dimensions))
+    points::table(py, auv_env::sonar::beams(dimensions))
 }
 
 /// (episode, sum of rewards, actions flown, (length of the trail, world) of each map).
@@ -126,25 +127,7 @@ impl Episode {
 
     /// Everything that is measured, in SI units.
     fn info<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let now = self.0.measures();
-        let info = PyDict::new(py);
-        info.set_item("time_s", now.time_s)?;
-        info.set_item("energy_j", now.energy_j)?;
-        info.set_item("path_length_m", now.path_length_m)?;
-        info.set_item("min_clearance_m", now.min_clearance_m)?;
-        info.set_item("distance_to_goal_m", now.distance_to_goal_m)?;
-        info.set_item("evaluations", now.evaluations)?;
-        info.set_item("replans", now.replans)?;
-        info.set_item("map_changes", now.map_changes)?;
-        info.set_item("map_changed", now.map_changed)?;
-        info.set_item("is_success", now.outcome == auv_env::Outcome::Goal)?;
-        info.set_item("outcome", now.outcome.name())?;
-        if self.0.mode() == Mode::Replan {
-            info.set_item("planning_s", now.planning_s)?;
-            info.set_item("failed_plans", now.failed_plans)?;
-            info.set_item("plan_feasible", now.plan_feasible)?;
-        }
-        Ok(info)
+        info::one(py, &self.0.measures(), self.0.mode())
     }
 
     /// Charges planning to the episode.

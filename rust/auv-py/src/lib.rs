@@ -4,6 +4,7 @@ mod batch;
 mod episode;
 mod errors;
 mod field;
+mod info;
 mod interrupt;
 mod maklink;
 mod navigator;
@@ -22,13 +23,15 @@ static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 #[pymodule]
 mod _core {
     #[pymodule_export]
-    use crate::batch::{Batch, outcomes};
+    use crate::batch::Batch;
     #[pymodule_export]
     use crate::episode::{Episode, Source, observation_layout, sonar_directions};
     #[pymodule_export]
     use crate::errors::{ActionError, PlanningError, ScenarioError};
     #[pymodule_export]
     use crate::field::TimeField;
+    #[pymodule_export]
+    use crate::info::outcomes;
     #[pymodule_export]
     use crate::maklink::maklink;
     #[pymodule_export]

@@ -24,6 +24,8 @@ const MARGIN: f64 = 12.0;
 /// The way that must exist keeps this clear of polygons (m), looked at on a grid this fine.
 const PASSAGE: f64 = 4.0;
 const CELL: f64 = 2.0;
+/// That this much is clear (m) is worth finding out: some cells ahead are then known to be.
+const AHEAD: f64 = 16.0;
 /// Radius of vessels (m), and the fastest one's speed over the vehicle's unless told; the slowest has half of it.
 const VESSEL: [f64; 2] = [4.0, 8.0];
 const VESSEL_RATIO: f64 = 0.6;
@@ -230,15 +232,19 @@ fn has_way(solids: &Solids, mission: &Mission) -> bool {
     let cell = |point: Vec3| (point[1] / CELL) as usize * CELLS + (point[0] / CELL) as usize;
     let (start, goal) = (cell(mission.start_m), cell(mission.goal_m));
     let mut seen = vec![false; CELLS * CELLS];
-    let mut open = vec![start];
+    // Cells, and how clear they are at least, as far as that follows from a neighbour.
+    let mut open = vec![(start, PASSAGE)];
     seen[start] = true;
-    while let Some(here) = open.pop() {
-        if here != start && solids.clearance(place(here), PASSAGE) < PASSAGE {
+    while let Some((here, known)) = open.pop() {
+        let clear = if known >= PASSAGE { known } else { solids.clearance(place(here), AHEAD) };
+        if clear < PASSAGE {
             continue;
         }
         if here == goal {
             return true;
         }
+        // A cell's width less, and more than what rounds.
+        let beside_clear = clear - CELL - 1e-6;
         let (column, row) = (here % CELLS, here / CELLS);
         // Neighbours, and whether they are nearer to the goal.
         let beside = [
@@ -251,7 +257,7 @@ fn has_way(solids: &Solids, mission: &Mission) -> bool {
         for nearer in [false, true] {
             for (inside, there, towards) in beside {
                 if inside && towards == nearer && !std::mem::replace(&mut seen[there], true) {
-                    open.push(there);
+                    open.push((there, beside_clear));
                 }
             }
         }
