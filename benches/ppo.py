@@ -3,7 +3,8 @@
 The same networks, the same number of steps; only the environments differ. A step of an AUV
 environment is a whole leg, some 40 ticks of physics; one of Pendulum-v1 is one tick. Shares are of
 the wall clock: `environments` is stepping them (with SB3's bookkeeping), `acting` the rest of the
-rollout (network, buffer), `learning` the gradient steps. Needs the extra `train`.
+rollout (network, buffer), `learning` the gradient steps. Needs the extra `train`. As in `auvgym
+train` torch's threads wait passively, which leaves their cores to the engine's.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ import os
 import time
 from collections.abc import Callable
 from typing import Any
+
+os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")  # before torch reads it
 
 import torch
 from rich.console import Console

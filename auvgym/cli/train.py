@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -71,6 +72,8 @@ def train(
     from auvgym import training
     from auvgym.training.config import whole_number
 
+    # Torch's threads shall not spin on the engine's cores; it reads this when it is imported.
+    os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
     chosen = parse_settings(settings, "--env-set")
     if difficulty is not None:
         chosen["difficulty"] = difficulty

@@ -173,7 +173,8 @@ class AUVVectorEnv(gymnasium.vector.VectorEnv[Observations, npt.ArrayLike, npt.N
             for index, row in zip(over.tolist(), self.last_observations(over), strict=True):
                 last[index] = row
             infos["final_obs"], infos["_final_obs"] = last, ended.copy()
-            infos["final_info"] = self._with_masks(self.columns(last=True, only=ended), ended.copy())
+            final = self.columns(last=True, only=ended)
+            infos["final_info"] = self._with_masks(final, ended.copy())
             infos["_final_info"] = ended.copy()
         return observations, rewards, ended, self._none(), infos
 
@@ -247,7 +248,7 @@ class AUVVectorEnv(gymnasium.vector.VectorEnv[Observations, npt.ArrayLike, npt.N
         return info
 
     def rows(self, indices: npt.NDArray[np.intp], last: bool = False) -> list[dict[str, Any]]:
-        """What is measured of the environments ``indices``, each as alone: now, or of the ``last``."""
+        """The infos of some environments, as alone: now, or when the ``last`` episodes ended."""
         return self._batch.infos(indices.astype(np.int64, copy=False), last)
 
     @staticmethod
@@ -373,4 +374,3 @@ def _mask(mask: Any, count: int) -> Flags:
     if not mask.any():
         raise ValueError("reset_mask: must be true somewhere")
     return mask
-

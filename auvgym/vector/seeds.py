@@ -8,7 +8,6 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium.utils import seeding
 
-
 #: Drawn together, since a call of the generator takes longer than its draws.
 _AT_ONCE = 128
 
