@@ -290,6 +290,11 @@ impl World {
         self.fixed.gridded.is_empty() && self.fixed.jets.is_empty() && self.fixed.uniform == [0.0, 0.0]
     }
 
+    /// Whether currents are the same at all depths.
+    pub fn has_level_currents(&self) -> bool {
+        self.fixed.gridded.iter().all(GriddedField::is_level)
+    }
+
     /// Position (m) of obstacle `i` at the present time.
     #[inline]
     pub fn obstacle_position(&self, i: usize) -> Vec3 {

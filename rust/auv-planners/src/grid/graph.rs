@@ -1,6 +1,8 @@
 //! The graph over a grid: which nodes are open, which edges are free, and how long they take in the present
 //! currents (length over the ground speed V_par + sqrt(V^2 - V_perp^2)).
 
+use std::cell::Cell;
+
 use auv_world::World;
 use auv_world::kinematics::{ground_speed, travel_time};
 use auv_world::math::{Vec2, Vec3, distance, norm};
@@ -9,6 +11,9 @@ use super::nodes::Grid;
 
 /// Slower over ground than this part of its speed through water, a vehicle is not getting anywhere.
 const STALLED: f64 = 0.02;
+
+/// Paces of edges are remembered if there are not more of them than this for each node.
+const PACES_PER_NODE: usize = 4;
 
 /// Which way edges are followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,6 +26,7 @@ pub enum Direction {
 
 /// All edges that take the same step from node to node.
 pub struct Edge {
+    index: usize,
     step: [i64; 3],
     /// The same in node indices.
     offset: i64,
@@ -35,6 +41,11 @@ pub struct Graph<'a> {
     clearance: Vec<f64>,
     current: Vec<Vec2>,
     edges: Vec<Edge>,
+    /// How far edges step along each axis, at most.
+    reach: [usize; 3],
+    /// Seconds per metre of each edge from each node of one level, NaN where not known yet: the same on all levels if
+    /// currents are. Empty where they are not, or there are too few levels for that to be worth its memory.
+    paces: Vec<Cell<f64>>,
     /// Nodes from which the goal is reached directly, in order of their index, and how long that takes (s).
     exits: Vec<(usize, f64)>,
     /// No leg or edge is faster (m/s).
@@ -44,7 +55,7 @@ pub struct Graph<'a> {
 impl<'a> Graph<'a> {
     /// The graph of a world as it is now; `None` if interrupted.
     pub fn new(world: &'a World, grid: &'a Grid, goal: Vec3, interrupted: &mut dyn FnMut() -> bool) -> Option<Self> {
-        let total = grid.len();
+        let (total, layer, level) = (grid.len(), grid.layer(), world.has_level_currents());
         let mut clearance = Vec::with_capacity(total);
         let mut current: Vec<Vec2> = Vec::with_capacity(total);
         let mut swiftest = 0.0_f64;
@@ -54,16 +65,21 @@ impl<'a> Graph<'a> {
             }
             let place = grid.place(node);
             clearance.push(world.clearance(place));
-            let flow = world.current(place);
+            let flow = if level && node >= layer { current[node - layer] } else { world.current(place) };
             swiftest = swiftest.max(flow[0] * flow[0] + flow[1] * flow[1]);
             current.push(flow);
         }
+        let edges = edges(grid, world.scenario().dimensions == 2);
+        let steps = |axis: usize| edges.iter().map(|edge| edge.step[axis].unsigned_abs() as usize).max().unwrap_or(0);
+        let paces = if level && layer * edges.len() <= PACES_PER_NODE * total { layer * edges.len() } else { 0 };
         let mut graph = Self {
             world,
             grid,
             clearance,
             current,
-            edges: edges(grid, world.scenario().dimensions == 2),
+            reach: std::array::from_fn(steps),
+            paces: vec![Cell::new(f64::NAN); paces],
+            edges,
             exits: Vec::new(),
             fastest: grid.speed() + swiftest.sqrt(),
         };
@@ -121,13 +137,15 @@ impl<'a> Graph<'a> {
     /// The nodes to which (or from which) edges lead, and the edges.
     #[inline]
     pub fn neighbours(&self, node: usize, direction: Direction) -> impl Iterator<Item = (usize, &Edge)> {
-        let cell = self.grid.cell(node).map(|index| index as i64);
-        let counts = self.grid.counts().map(|count| count as i64);
+        let (cell, counts) = (self.grid.cell(node), self.grid.counts());
+        let central = (0..3).all(|axis| cell[axis] >= self.reach[axis] && cell[axis] + self.reach[axis] < counts[axis]);
+        let (cell, counts) = (cell.map(|index| index as i64), counts.map(|count| count as i64));
         let sign = if direction == Direction::Forwards { 1 } else { -1 };
         // Only open nodes lead on.
         let edges = if direction == Direction::Backwards || self.is_open(node) { &self.edges[..] } else { &[] };
         edges.iter().filter_map(move |edge| {
-            let inside = (0..3).all(|axis| (0..counts[axis]).contains(&(cell[axis] + sign * edge.step[axis])));
+            let inside =
+                central || (0..3).all(|axis| (0..counts[axis]).contains(&(cell[axis] + sign * edge.step[axis])));
             if !inside {
                 return None;
             }
@@ -140,7 +158,15 @@ impl<'a> Graph<'a> {
     /// The time that an edge between two nodes takes (s).
     #[inline]
     pub fn seconds(&self, edge: &Edge, behind: usize, ahead: usize) -> f64 {
-        edge.length * self.pace(edge.direction, self.current[behind], self.current[ahead])
+        let pace = || self.pace(edge.direction, self.current[behind], self.current[ahead]);
+        if self.paces.is_empty() {
+            return edge.length * pace();
+        }
+        let known = &self.paces[behind % self.grid.layer() * self.edges.len() + edge.index];
+        if known.get().is_nan() {
+            known.set(pace());
+        }
+        edge.length * known.get()
     }
 
     /// Whether the edge between two nodes is free.
@@ -165,13 +191,13 @@ impl<'a> Graph<'a> {
 
 fn edges(grid: &Grid, flat: bool) -> Vec<Edge> {
     let (spacing, counts) = (grid.spacing(), grid.counts().map(|count| count as i64));
-    let edge = |step: [i64; 3]| {
+    let edge = |(index, step): (usize, [i64; 3])| {
         let span: Vec3 = std::array::from_fn(|axis| step[axis] as f64 * spacing[axis]);
         let length = norm(span);
         let offset = step[0] + counts[0] * (step[1] + counts[1] * step[2]);
-        Edge { step, offset, direction: span.map(|component| component / length), length }
+        Edge { index, step, offset, direction: span.map(|component| component / length), length }
     };
-    steps(flat).into_iter().map(edge).collect()
+    steps(flat).into_iter().enumerate().map(edge).collect()
 }
 
 /// Steps to neighbours: on the map all coprime steps of up to 3 nodes (32) in 2-D and up to 2 (16) in 3-D,

@@ -44,6 +44,11 @@ impl Grid {
         self.counts.iter().product()
     }
 
+    /// Nodes of one depth.
+    pub fn layer(&self) -> usize {
+        self.counts[0] * self.counts[1]
+    }
+
     /// Nodes along x, y, z.
     pub fn counts(&self) -> [usize; 3] {
         self.counts
@@ -71,7 +76,7 @@ impl Grid {
 
     /// Which node along x, y, z.
     pub fn cell(&self, node: usize) -> [usize; 3] {
-        [node % self.counts[0], node / self.counts[0] % self.counts[1], node / (self.counts[0] * self.counts[1])]
+        [node % self.counts[0], node / self.counts[0] % self.counts[1], node / self.layer()]
     }
 
     /// Where a node lies (m).

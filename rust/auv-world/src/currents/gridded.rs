@@ -58,6 +58,11 @@ impl GriddedField {
         self.time.len() == 1
     }
 
+    /// Whether it is the same at all depths.
+    pub fn is_level(&self) -> bool {
+        self.depth.len() == 1
+    }
+
     /// Velocity (m/s) at a point (m) and time (s); zero where nothing near is known. Beyond the ends of
     /// depth and time the last value holds.
     pub fn velocity(&self, point: Vec3, time_s: f64) -> Vec2 {
