@@ -17,6 +17,7 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium.error import ResetNeeded
+from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from gymnasium.wrappers.vector import RecordEpisodeStatistics
 
@@ -25,6 +26,7 @@ from auvgym import ActionError
 from auvgym.envs import AUVDynamic2DEnv
 from auvgym.registration import ENVIRONMENTS
 from auvgym.vector import AUVVectorEnv
+from auvgym.vector.seeds import EpisodeSeeds
 
 every_id = pytest.mark.parametrize("env_id", list(ENVIRONMENTS))
 MODES = [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP]
@@ -162,7 +164,7 @@ def test_without_autoreset_a_mask_begins_again() -> None:
                 envs.step(actions(envs, step))
             mask = one[2]
             same(
-                envs.reset(options={"reset_mask": mask.copy()}),
+                envs.reset(options={"reset_mask": np.repeat(mask, 2)[::2]}),  # not contiguous
                 expected.reset(options={"reset_mask": mask.copy()}),
             )
     assert ends > 2
@@ -176,6 +178,16 @@ def test_episodes_by_their_seed() -> None:
         assert np.array_equal(observations[index], single.reset(options={"episode_seed": seed})[0])
     observations, _ = envs.reset(options={"episode_seed": 6})
     assert (observations == observations[0]).all()
+
+
+def test_seeds_drawn_in_blocks_are_those_drawn_one_by_one() -> None:
+    seeds, alone = EpisodeSeeds(2), seeding.np_random(3)[0]
+    seeds.seed([3, 4], np.arange(2))
+    other = seeds.next[1]
+    for _ in range(300):
+        assert seeds.next[0] == alone.integers(0, 2**63)
+        seeds.used(np.array([0]))
+    assert seeds.next[1] == other
 
 
 # --- what comes back is the caller's --------------------------------------------------------------

@@ -373,4 +373,4 @@ def _mask(mask: Any, count: int) -> Flags:
         raise ValueError(f"reset_mask = {mask!r}: must be a bool array of shape ({count},)")
     if not mask.any():
         raise ValueError("reset_mask: must be true somewhere")
-    return mask
+    return np.ascontiguousarray(mask)

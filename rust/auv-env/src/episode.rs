@@ -58,11 +58,18 @@ pub struct State {
     pub actions: Vec<f32>,
 }
 
+/// For so many ticks at full speed nothing comes nearer than what was found in the way.
+const LOOKOUT_TICKS: f64 = 16.0;
+
 /// One episode.
 #[derive(Debug, Clone)]
 pub struct Episode {
     world: World,
     limits: Limits,
+    /// The box and its margin (m).
+    bounds: [Vec3; 2],
+    /// How much farther than the least clearance so far what is near is looked at (m).
+    lookout_m: f64,
     helm: Helm,
     state: State,
     record: Record,
@@ -127,9 +134,16 @@ impl Episode {
         let flat = scenario.dimensions == 2;
         let helm = Helm::new(vehicle, scenario.episode.tick_s, scenario.episode.station_radius_m, flat);
         let beams = sonar::beams(scenario.dimensions);
+        let domain = &scenario.domain;
+        let bounds = [domain.min_m.map(|low| low - domain.margin_m), domain.max_m.map(|high| high + domain.margin_m)];
+        // What is measured less often is measured farther. A lower bound must be measured when it always was.
+        let near = world.has_other_solids() && world.has_exact_clearance();
+        let lookout_m = if near { LOOKOUT_TICKS * vehicle.speed_mps * scenario.episode.tick_s } else { f64::INFINITY };
         Self {
             world,
             limits,
+            bounds,
+            lookout_m,
             helm,
             state,
             record: Record::Everything,
@@ -406,23 +420,20 @@ impl Episode {
     }
 
     fn measure_clearance(&mut self) {
-        let clearance = self.world.clearance(self.state.position);
+        let farthest = self.state.min_clearance_m + self.lookout_m;
+        let clearance = self.world.clearance_within(self.state.position, farthest);
         self.state.clearance_left_m = clearance;
         self.state.min_clearance_m = self.state.min_clearance_m.min(clearance);
     }
 
     fn judge(&self) -> Outcome {
-        let (state, scenario) = (&self.state, self.world.scenario());
-        let domain = &scenario.domain;
-        let outside = (0..3).any(|axis| {
-            state.position[axis] < domain.min_m[axis] - domain.margin_m
-                || state.position[axis] > domain.max_m[axis] + domain.margin_m
-        });
+        let (state, [low, high]) = (&self.state, self.bounds);
+        let outside = (0..3).any(|axis| state.position[axis] < low[axis] || state.position[axis] > high[axis]);
         if state.min_clearance_m <= 0.0 {
             Outcome::Collision
         } else if outside {
             Outcome::OutOfBounds
-        } else if self.distance_to_goal_m() <= scenario.limits.goal_radius_m {
+        } else if self.distance_to_goal_m() <= self.world.scenario().limits.goal_radius_m {
             Outcome::Goal
         } else if state.energy_j >= self.limits.energy_j {
             Outcome::Energy

@@ -375,8 +375,20 @@ impl World {
     /// obstacles and sea floor, exact for spheres and discs, never too large for the others.
     #[inline]
     pub fn clearance(&self, point: Vec3) -> f64 {
+        self.clearance_within(point, f64::INFINITY)
+    }
+
+    /// The lesser of `nearest` and [`World::clearance`] (m): what is farther away need not be measured.
+    #[inline]
+    pub fn clearance_within(&self, point: Vec3, nearest: f64) -> f64 {
         let round = self.spheres.clearance(point).min(self.discs.clearance(point));
-        self.fixed.floor.clearance(point, self.solids.clearance(point, round))
+        self.fixed.floor.clearance(point, self.solids.clearance(point, round.min(nearest)))
+    }
+
+    /// Whether clearance is the distance itself, which changes by no more than one moves; a lower bound may.
+    pub fn has_exact_clearance(&self) -> bool {
+        let exact = |shape: &Solid| !matches!(shape, Solid::Superquadric(_));
+        matches!(self.fixed.floor, Floor::None | Floor::Flat(_)) && self.solids().iter().all(exact)
     }
 
     /// Depth of the sea floor (m) at (x, y); infinite where there is none.

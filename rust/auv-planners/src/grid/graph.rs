@@ -227,11 +227,33 @@ fn steps(flat: bool) -> Vec<[i64; 3]> {
 
 #[cfg(test)]
 mod tests {
+    use auv_world::families::{Parameters, generate};
+
     use super::*;
+    use crate::grid::Settings;
 
     #[test]
     fn neighbours() {
         assert_eq!(steps(true).len(), 32);
         assert_eq!(steps(false).len(), 50);
+    }
+
+    #[test]
+    fn what_is_remembered_of_one_depth_holds_at_all() {
+        let world = World::new(generate("lfhh-3d", 5, &Parameters::default()).unwrap(), 5, 0).unwrap();
+        let grid = Grid::new(&world, Settings::default());
+        let graph = Graph::new(&world, &grid, world.mission().goal_m, &mut || false).unwrap();
+        assert!(!graph.paces.is_empty() && grid.len() >= 4 * grid.layer());
+        let mut looked = 0;
+        // From the deepest level up, then down: those that remember and those that are remembered.
+        for node in (0..grid.len()).rev().step_by(7).chain((0..grid.len()).step_by(5)) {
+            assert_eq!(graph.current[node], world.current(grid.place(node)));
+            for (other, edge) in graph.neighbours(node, Direction::Forwards) {
+                let afresh = edge.length * graph.pace(edge.direction, graph.current[node], graph.current[other]);
+                assert_eq!(graph.seconds(edge, node, other).to_bits(), afresh.to_bits());
+                looked += 1;
+            }
+        }
+        assert!(looked > 10_000);
     }
 }

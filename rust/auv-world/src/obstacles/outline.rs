@@ -23,6 +23,8 @@ pub(super) struct Outline {
     /// A box that holds it with room for rounding.
     low: Vec2,
     high: Vec2,
+    /// Half the diagonal of the box.
+    extent: f64,
 }
 
 /// Four edges.
@@ -62,7 +64,9 @@ impl Outline {
         };
         let edges = (0..corners.len()).step_by(LANES).map(four).collect();
         let slack = SLACK * (high[0] - low[0]).max(high[1] - low[1]);
-        Self { edges, count: corners.len(), low: low.map(|v| v - slack), high: high.map(|v| v + slack) }
+        let (low, high) = (low.map(|v| v - slack), high.map(|v| v + slack));
+        let (width, height) = (high[0] - low[0], high[1] - low[1]);
+        Self { edges, count: corners.len(), low, high, extent: 0.5 * (width * width + height * height).sqrt() }
     }
 
     /// Its corners (m).
@@ -123,17 +127,26 @@ impl Outline {
     /// bit for each. The others keep so far away that [`super::march`] takes them to their ends.
     #[inline]
     pub fn may_stop(&self, origin: Vec2, directions: &[f64x4; 2], longest: f64x4) -> u32 {
+        // Steps of more than a 256th of the way come to its end in time. Half a millimetre is more than rounding.
+        let near = longest * f64x4::splat(1.02 / STEPS as f64) + f64x4::splat(5e-4);
+        let turned = |corner: Vec2| {
+            let offset = [f64x4::splat(corner[0] - origin[0]), f64x4::splat(corner[1] - origin[1])];
+            let along = offset[0] * directions[0] + offset[1] * directions[1];
+            (along, offset[0] * directions[1] - offset[1] * directions[0])
+        };
+        // Most beams pass by a circle round it, too.
+        let (along, across) = turned([0, 1].map(|axis| 0.5 * (self.low[axis] + self.high[axis])));
+        let apart = across.abs().fast_max(-along).fast_max(along - longest);
+        if (apart - near).simd_gt(f64x4::splat(self.extent)).all() {
+            return 0;
+        }
         // In the frame of a beam the polygon lies between these.
         let (mut low, mut high) = ([f64x4::splat(f64::INFINITY); 2], [f64x4::splat(f64::NEG_INFINITY); 2]);
         for corner in self.corners() {
-            let offset = [f64x4::splat(corner[0] - origin[0]), f64x4::splat(corner[1] - origin[1])];
-            let along = offset[0] * directions[0] + offset[1] * directions[1];
-            let across = offset[0] * directions[1] - offset[1] * directions[0];
+            let (along, across) = turned(corner);
             (low[0], high[0]) = (low[0].fast_min(along), high[0].fast_max(along));
             (low[1], high[1]) = (low[1].fast_min(across), high[1].fast_max(across));
         }
-        // Steps of more than a 256th of the way come to its end in time. Half a millimetre is more than rounding.
-        let near = longest * f64x4::splat(1.02 / STEPS as f64) + f64x4::splat(5e-4);
         let apart = low[1].fast_max(-high[1]).fast_max(low[0] - longest).fast_max(-high[0]);
         apart.simd_le(near).to_bitmask()
     }
