@@ -290,6 +290,34 @@ def test_a_class_that_steps_in_its_own_way_is_refused() -> None:
         AUVVectorEnv(Bonus, 2)
 
 
+@pytest.mark.parametrize("begun", [False, True])
+def test_whatever_the_engine_is_asked_it_answers_or_raises(begun: bool) -> None:
+    envs = batch(count=3, autoreset_mode="SameStep")
+    if begun:
+        envs.reset(seed=0)
+    engine: Any = envs._batch
+    indices = [np.array(these, np.int64) for these in ([], [0], [-1], [3], [2**62], [-(2**63)])]
+    masks = [np.ones(count, bool) for count in (2, 3, 4)] + [np.ones(6, bool)[::2], "x"]
+    seeds = [np.zeros(count, np.uint64) for count in (2, 3)]
+    actions = [np.full(shape, np.nan, np.float32) for shape in ((3, 2), (2, 2), (3, 3), (0, 2))]
+    calls: list[tuple[Any, tuple[Any, ...]]] = [
+        *((engine.infos, (some, last)) for some in [*indices, None] for last in (False, True)),
+        *((engine.last_observations, (some,)) for some in indices),
+        *((engine.info, (False, mask)) for mask in masks),
+        *((engine.step, (action, some)) for action in actions for some in seeds),
+        *((engine.episode, (index,)) for index in (3, -1, 2**70)),
+    ]
+
+    def refused(call: Any, arguments: tuple[Any, ...]) -> bool:
+        try:
+            call(*arguments)
+        except Exception:  # a panic is none
+            return True
+        return False
+
+    assert len(calls) // 2 < sum(refused(*call) for call in calls) < len(calls)
+
+
 # --- copies, processes, signals -------------------------------------------------------------------
 
 

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from gymnasium.utils import seeding
 
 #: Drawn together, since a call of the generator takes longer than its draws.
-_AT_ONCE = 128
+_AT_ONCE = 32
 
 
 class EpisodeSeeds:

@@ -4,6 +4,9 @@
 //! An [`episode::Episode`] is a pure function of its world and the actions so far. In re-plan mode ([`replan`]) a
 //! planner's path is flown, and actions say when to plan anew.
 
+// As `unwrap_used` and `panic` everywhere; benches and examples may expect. Tests may all of it.
+#![deny(clippy::expect_used, clippy::unreachable)]
+
 pub mod batch;
 pub mod episode;
 pub mod error;

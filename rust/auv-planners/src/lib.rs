@@ -3,6 +3,9 @@
 //! [`registry::plan`] runs any planner by name, [`path_cost`] judges any path, [`replanning::replan`]
 //! plans anew within a window, and [`protocol::run`] repeats the LFHH paper's experiment.
 
+// As `unwrap_used` and `panic` everywhere; benches and examples may expect. Tests may all of it.
+#![deny(clippy::expect_used, clippy::unreachable)]
+
 pub mod control;
 pub mod cost;
 pub mod differential_evolution;

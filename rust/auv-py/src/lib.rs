@@ -1,5 +1,8 @@
 //! `auvgym._core`: the engine as Python sees it. Bindings only; the Python package wraps them.
 
+// As `unwrap_used` and `panic` everywhere; benches and examples may expect. Tests may all of it.
+#![deny(clippy::expect_used, clippy::unreachable)]
+
 mod batch;
 mod episode;
 mod errors;

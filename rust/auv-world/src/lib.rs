@@ -4,6 +4,9 @@
 //! map changes so far, and answers the questions that planners, vehicles and pictures ask: the current
 //! here, the clearance here, how far a sonar beam runs. Units are SI; z is depth, positive down.
 
+// As `unwrap_used` and `panic` everywhere; benches and examples may expect. Tests may all of it.
+#![deny(clippy::expect_used, clippy::unreachable)]
+
 pub mod currents;
 pub mod error;
 pub mod families;
