@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use auv_planners::Control;
 use auv_world::World;
-use auv_world::math::{Vec3, add_scaled, distance};
+use auv_world::math::{Vec3, distance};
 use auv_world::scenario::Change;
-use auv_world::world::Scratch;
+use auv_world::world::{Neighbour, Scratch};
 use serde::{Deserialize, Serialize};
 
 use crate::error::EnvError;
@@ -16,6 +16,7 @@ use crate::observation::{Mode, Writer};
 use crate::replan::{Pilot, Settings, Window};
 use crate::vehicle::Helm;
 use crate::{observation, replan, reward, sonar};
+use flight::Leg;
 
 /// Everything that changes while an episode runs, but for its world.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -79,6 +80,18 @@ pub struct Episode {
     turned: Vec<Vec3>,
     ranges: Vec<f64>,
     scratch: Scratch,
+    /// What was nearest when clearance was measured last.
+    neighbour: Option<Neighbour>,
+}
+
+/// An action before its leg is flown.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Departure {
+    /// Where the leg leads, if there is one (m).
+    waypoint: Option<Vec3>,
+    /// Distance to the goal (m) and time (s) when the action was taken.
+    distance_m: f64,
+    start_s: f64,
 }
 
 impl Episode {
@@ -152,6 +165,7 @@ impl Episode {
             ranges: vec![0.0; beams.len()],
             beams,
             scratch: Scratch::default(),
+            neighbour: None,
         }
     }
 
@@ -238,14 +252,11 @@ impl Episode {
     /// [`EnvError`] for a wrong action, an episode that has ended, or planning that was interrupted; nothing has
     /// changed then.
     pub fn act(&mut self, action: &[f32], control: &Control<'_>) -> Result<f64, EnvError> {
-        match self.pilot.take() {
-            None => self.steer(action),
-            Some(mut pilot) => {
-                let done = self.decide(&mut pilot, action, control);
-                self.pilot = Some(pilot);
-                done
-            }
+        let departure = self.depart(action, control)?;
+        if let Some(leg) = self.leg(&departure) {
+            flight::fly(&mut [leg]);
         }
+        Ok(self.arrive(&departure))
     }
 
     /// The same; nothing interrupts it.
@@ -256,47 +267,66 @@ impl Episode {
         self.act(action, &Control::none())
     }
 
-    /// Flies one leg towards the action's waypoint.
-    fn steer(&mut self, action: &[f32]) -> Result<f64, EnvError> {
-        self.check(action)?;
-        let waypoint = self.waypoint_of(action);
-        Ok(self.rewarded(action, |episode| episode.fly(waypoint)))
+    /// Does what an action asks for, up to the leg that it ends with.
+    ///
+    /// # Errors
+    /// As [`Episode::act`].
+    pub(crate) fn depart(&mut self, action: &[f32], control: &Control<'_>) -> Result<Departure, EnvError> {
+        match self.pilot.take() {
+            None => {
+                self.check(action)?;
+                let departure = self.departure(action);
+                Ok(Departure { waypoint: Some(self.waypoint_of(action)), ..departure })
+            }
+            Some(mut pilot) => {
+                let done = self.decide(&mut pilot, action, control);
+                self.pilot = Some(pilot);
+                done
+            }
+        }
     }
 
-    /// Plans anew if the action says so, which takes its time, and flies one leg of the plan. A map change while
+    /// Plans anew if the action says so, which takes its time, and goes on along the plan. A map change while
     /// planning ends the step: it calls for another decision.
-    fn decide(&mut self, pilot: &mut Pilot, action: &[f32], control: &Control<'_>) -> Result<f64, EnvError> {
+    fn decide(&mut self, pilot: &mut Pilot, action: &[f32], control: &Control<'_>) -> Result<Departure, EnvError> {
         self.check_decision(action)?;
         let (position, flown_m) = (self.state.position, self.state.path_length_m);
         let window = Window::asked(action[0])?;
         let draft = window.map(|window| pilot.draft(&self.world, position, flown_m, window, control)).transpose()?;
-        Ok(self.rewarded(action, |episode| {
-            if let Some(draft) = draft {
-                episode.charge(draft.evaluations, 1);
-                let before = episode.state.time_s;
-                episode.hold(draft.seconds);
-                episode.state.planning_s += episode.state.time_s - before;
-                episode.state.failed_plans += u64::from(!pilot.take(draft));
-            }
-            if episode.state.outcome == Outcome::Running && !episode.state.map_changed {
-                let flight = &episode.world.scenario().episode;
-                pilot.course.advance(episode.state.position, flight.capture_radius_m);
-                let aim = pilot.course.aim(episode.state.position, flight);
-                episode.fly(aim);
-            }
-        }))
+        let mut departure = self.departure(action);
+        if let Some(draft) = draft {
+            self.charge(draft.evaluations, 1);
+            let before = self.state.time_s;
+            self.hold(draft.seconds);
+            self.state.planning_s += self.state.time_s - before;
+            self.state.failed_plans += u64::from(!pilot.take(draft));
+        }
+        if self.state.outcome == Outcome::Running && !self.state.map_changed {
+            let flight = &self.world.scenario().episode;
+            pilot.course.advance(self.state.position, flight.capture_radius_m);
+            departure.waypoint = Some(pilot.course.aim(self.state.position, flight));
+        }
+        Ok(departure)
     }
 
-    /// Does what an action asks for; gives its reward.
-    fn rewarded(&mut self, action: &[f32], work: impl FnOnce(&mut Self)) -> f64 {
+    /// Notes an action, and what its reward is reckoned from.
+    fn departure(&mut self, action: &[f32]) -> Departure {
         if self.record == Record::Everything {
             self.state.actions.extend_from_slice(action);
         }
         self.state.map_changed = false;
-        let (before, start_s) = (self.distance_to_goal_m(), self.state.time_s);
-        work(self);
-        let elapsed = self.state.time_s - start_s;
-        let after = self.distance_to_goal_m();
+        Departure { waypoint: None, distance_m: self.distance_to_goal_m(), start_s: self.state.time_s }
+    }
+
+    /// The leg that an action ends with, if there is still one to be flown.
+    pub(crate) fn leg(&mut self, departure: &Departure) -> Option<Leg<'_>> {
+        departure.waypoint.map(|waypoint| Leg::towards(self, waypoint))
+    }
+
+    /// The reward of an action whose leg was flown.
+    pub(crate) fn arrive(&self, departure: &Departure) -> f64 {
+        let elapsed = self.state.time_s - departure.start_s;
+        let (before, after) = (departure.distance_m, self.distance_to_goal_m());
         reward::leg(before, after, self.limits.distance_m, elapsed, self.limits.time_s, self.state.outcome)
     }
 
@@ -343,90 +373,37 @@ impl Episode {
         }
     }
 
-    /// Flies until the waypoint is captured, the leg has lasted its time, the map changes, or the end.
-    fn fly(&mut self, waypoint: Vec3) {
-        self.state.waypoint = Some(waypoint);
-        let flight = self.world.scenario().episode.clone();
-        let first = self.state.ticks;
-        loop {
-            self.tick(waypoint, flight.tick_s);
-            if self.judged() {
-                return;
-            }
-            let elapsed = (self.state.ticks - first) as f64 * flight.tick_s;
-            if elapsed >= flight.maximum_leg_s {
-                return;
-            }
-            if elapsed >= flight.minimum_leg_s && distance(self.state.position, waypoint) <= flight.capture_radius_m {
-                return;
-            }
-        }
-    }
-
     /// Keeps station for `seconds`, in whole ticks, or until the end. The map may change meanwhile.
     fn hold(&mut self, seconds: f64) {
-        let (here, tick_s) = (self.state.position, self.world.scenario().episode.tick_s);
-        self.state.waypoint = Some(here);
+        let tick_s = self.world.scenario().episode.tick_s;
         let last = self.state.ticks.saturating_add((seconds / tick_s).ceil() as u64);
+        let here = self.state.position;
         while self.state.ticks < last && self.state.outcome == Outcome::Running {
-            self.tick(here, tick_s);
-            self.judged();
+            let ticks = last - self.state.ticks;
+            flight::fly(&mut [Leg::hold(self, here, ticks)]);
         }
     }
 
-    /// Judges the tick that was flown, and changes the map if that is due: whether a leg ends with it.
-    fn judged(&mut self) -> bool {
-        self.state.outcome = self.judge();
-        if self.state.outcome != Outcome::Running {
-            return true;
-        }
-        if self.change_due() && self.world.apply_change(self.state.position) {
+    /// Judges the leg that was flown, and changes the map if that is due.
+    fn judge(&mut self) {
+        self.state.outcome = self.outcome();
+        let due = self.state.since_change_m >= self.change_every_m();
+        if self.state.outcome == Outcome::Running && due && self.world.apply_change(self.state.position) {
             self.state.since_change_m = 0.0;
             self.state.map_changed = true;
-            self.measure_clearance();
-            return true;
-        }
-        false
-    }
-
-    fn tick(&mut self, waypoint: Vec3, tick_s: f64) {
-        let state = &mut self.state;
-        let current = self.world.current(state.position);
-        let order = self.helm.steer(state.position, state.heading, waypoint, current);
-        let through_water = order.speed * tick_s;
-        let mut position = add_scaled(state.position, through_water, order.heading);
-        position[0] += current[0] * tick_s;
-        position[1] += current[1] * tick_s;
-        // The surface is no obstacle: a vehicle just cannot rise above it.
-        position[2] = position[2].max(self.world.scenario().domain.min_m[2].min(state.position[2]));
-        let travelled = distance(state.position, position);
-        state.position = position;
-        state.heading = order.heading;
-        state.ticks += 1;
-        state.time_s = state.ticks as f64 * tick_s;
-        state.energy_j += self.world.scenario().vehicle.power_w(order.speed) * tick_s;
-        state.path_length_m += travelled;
-        state.since_change_m += travelled;
-        if self.record == Record::Everything {
-            state.trail.push(position);
-        }
-        self.world.set_time(self.state.time_s);
-        // No clearance shrinks faster than vehicle and obstacles approach each other: as long as it cannot
-        // have become the least so far, it need not be measured.
-        self.state.clearance_left_m -= travelled + self.world.fastest_obstacle_mps() * tick_s;
-        if self.state.clearance_left_m <= self.state.min_clearance_m {
-            self.measure_clearance();
+            self.neighbour = None;
+            let clearance = self.clearance_at(self.state.position, self.state.min_clearance_m);
+            self.state.clearance_left_m = clearance;
+            self.state.min_clearance_m = self.state.min_clearance_m.min(clearance);
         }
     }
 
-    fn measure_clearance(&mut self) {
-        let farthest = self.state.min_clearance_m + self.lookout_m;
-        let clearance = self.world.clearance_within(self.state.position, farthest);
-        self.state.clearance_left_m = clearance;
-        self.state.min_clearance_m = self.state.min_clearance_m.min(clearance);
+    /// The clearance at a place (m), as far as it can matter where the least so far is `least_m`.
+    fn clearance_at(&mut self, position: Vec3, least_m: f64) -> f64 {
+        self.world.clearance_along(position, least_m + self.lookout_m, &mut self.neighbour)
     }
 
-    fn judge(&self) -> Outcome {
+    fn outcome(&self) -> Outcome {
         let (state, [low, high]) = (&self.state, self.bounds);
         let outside = (0..3).any(|axis| state.position[axis] < low[axis] || state.position[axis] > high[axis]);
         if state.min_clearance_m <= 0.0 {
@@ -444,14 +421,15 @@ impl Episode {
         }
     }
 
-    fn change_due(&self) -> bool {
-        let every = self.world.scenario().change.as_ref().map(Change::every_m);
-        every.is_some_and(|every| self.state.since_change_m >= every)
+    /// Path length between map changes (m).
+    fn change_every_m(&self) -> f64 {
+        self.world.scenario().change.as_ref().map_or(f64::INFINITY, Change::every_m)
     }
 
-    /// The obstacles, in no order, that may be within sonar range of where the vehicle last looked.
-    pub(crate) fn within_sonar(&self) -> impl Iterator<Item = usize> {
-        self.world.within_sonar(&self.scratch)
+    /// The obstacles, in no order, that may be within sonar range of where the vehicle last looked, and where they
+    /// lie from there (m).
+    pub(crate) fn within_sonar(&self) -> impl Iterator<Item = (usize, Vec3)> {
+        self.world.within_sonar(&self.scratch, self.state.position)
     }
 
     /// Writes what the vehicle sees now; `values` as long as [`observation::length`] says.
@@ -472,6 +450,7 @@ impl Episode {
     }
 }
 
+pub(crate) mod flight;
 mod saved;
 mod waypoints;
 

@@ -20,6 +20,10 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// All, in order.
+    pub const ALL: [Self; 6] =
+        [Self::Running, Self::Goal, Self::Collision, Self::OutOfBounds, Self::Energy, Self::Timeout];
+
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {

@@ -1,6 +1,6 @@
 //! What an agent sees: a flat vector of 32-bit floats in named blocks, each within its stated bounds.
 
-use auv_world::math::{Vec3, add_scaled, norm, sub};
+use auv_world::math::{Vec3, add_scaled, norm};
 use auv_world::rng::{Purpose, Stream};
 
 use crate::episode::Episode;
@@ -232,12 +232,12 @@ pub(crate) fn observe(episode: &Episode, ranges: &[f64], out: &mut Writer<'_>) {
 
 /// The nearest obstacles whose extent reaches into sonar range, nearest first, of equals the first.
 fn nearest(episode: &Episode, sonar_range: f64, axes: usize) -> [Option<Contact>; NEAREST] {
-    let (world, position) = (episode.world(), episode.state().position);
+    let world = episode.world();
     let mut found: [Option<Contact>; NEAREST] = [None; NEAREST];
     let rank = |c: &Option<Contact>| c.map_or((f64::INFINITY, usize::MAX), |c| (c.gap, c.index));
-    for index in episode.within_sonar() {
-        let (mut offset, extent) = (sub(world.obstacle_position(index), position), world.extents()[index]);
-        if axes == 2 || world.scenario().obstacles[index].is_flat() {
+    for (index, mut offset) in episode.within_sonar() {
+        let extent = world.extents()[index];
+        if axes == 2 {
             offset[2] = 0.0;
         }
         let square = offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2];

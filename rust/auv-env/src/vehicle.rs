@@ -3,6 +3,10 @@
 use auv_world::math::{Vec2, Vec3, norm, sub};
 use auv_world::scenario::Vehicle;
 
+mod abreast;
+
+pub use abreast::{HelmLanes, Row};
+
 /// Of its speed the vehicle gives at most this part to holding against a cross current.
 const CRAB: f64 = 0.98;
 

@@ -16,6 +16,14 @@ pub struct Column {
 }
 
 impl Column {
+    /// A column of these values; the padding behind them is `filler`.
+    pub fn of(values: impl Iterator<Item = f64>, filler: f64) -> Self {
+        let mut values = Vec::from_iter(values);
+        let len = values.len();
+        values.resize(len.next_multiple_of(LANES), filler);
+        Self { values, len }
+    }
+
     /// Appends a value; the padding behind it is `filler`.
     pub fn push(&mut self, value: f64, filler: f64) {
         if self.len == self.values.len() {
@@ -116,6 +124,7 @@ mod tests {
     fn pads_with_the_filler() {
         let mut column = Column::default();
         (0..5).for_each(|i| column.push(f64::from(i), 9.0));
+        assert_eq!(Column::of((0..5).map(f64::from), 9.0).values, column.values);
         let chunks: Vec<[f64; 4]> = column.chunks().map(f64x4::to_array).collect();
         assert_eq!(chunks, [[0.0, 1.0, 2.0, 3.0], [4.0, 9.0, 9.0, 9.0]]);
         let halves: Vec<[f64; 2]> = column.halves().flatten().map(f64x2::to_array).collect();

@@ -3,6 +3,11 @@
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng as _, SeedableRng};
+use wide::f64x4;
+
+use crate::lanes::LANES;
+
+mod box_muller;
 
 /// What a stream of random numbers is for. The numbers are part of the file format: never reuse one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,6 +80,19 @@ impl Stream {
         mean + deviation * radius * libm::cos(std::f64::consts::TAU * self.unit())
     }
 
+    /// To each of `values`, one after another, what [`Stream::normal`] with mean 0 would give.
+    pub fn disturb(&mut self, values: &mut [f64], deviation: f64) {
+        for four in values.chunks_mut(LANES) {
+            let (mut a, mut b) = ([0.0; LANES], [0.0; LANES]);
+            for (a, b) in a.iter_mut().zip(&mut b).take(four.len()) {
+                (*a, *b) = (self.unit(), self.unit());
+            }
+            let [radius, cos] = box_muller::factors(a, b);
+            let steps = f64x4::splat(deviation) * radius * cos;
+            four.iter_mut().zip(steps.to_array()).for_each(|(value, step)| *value += step);
+        }
+    }
+
     /// Two standard normals at once, for those who need many (Marsaglia's polar method).
     #[inline]
     pub fn normals(&mut self) -> [f64; 2] {
@@ -120,6 +138,18 @@ mod tests {
         let n = f64::from(n);
         assert!((sum / (2.0 * n)).abs() < 0.01 && (square / (2.0 * n) - 1.0).abs() < 0.02);
         assert!((product / n).abs() < 0.02);
+    }
+
+    #[test]
+    fn disturbs_as_one_normal_after_another() {
+        for count in 0..11 {
+            let [mut alone, mut together] = [(); 2].map(|()| Stream::new(3, Purpose::Change, count));
+            let mut values: Vec<f64> = (0..count).map(|i| 100.0 * f64::from(i)).collect();
+            let expected: Vec<f64> = values.iter().map(|value| value + alone.normal(0.0, 7.0)).collect();
+            together.disturb(&mut values, 7.0);
+            assert_eq!(values, expected);
+            assert_eq!(alone.next_u64(), together.next_u64());
+        }
     }
 
     #[test]

@@ -41,7 +41,24 @@ struct Fixed {
     /// Which obstacles the spheres, discs and other solids are.
     numbers: [Vec<u32>; 3],
     fastest_obstacle: f64,
+    /// Whether the clearance of each solid is its distance.
+    exact_solids: bool,
 }
+
+/// The solid that was nearest where clearance was measured last.
+#[derive(Debug, Clone, Copy)]
+pub struct Neighbour {
+    slot: Slot,
+    /// No other solid was nearer than this (m), ...
+    rivals_m: f64,
+    /// ... at this place (m) ...
+    at: Vec3,
+    /// ... and time (s).
+    time_s: f64,
+}
+
+/// More than what rounds in distances (m).
+const ROUNDING_M: f64 = 1e-6;
 
 /// Where an obstacle is kept.
 #[derive(Debug, Clone, Copy)]
@@ -65,6 +82,8 @@ pub struct World {
     spheres: Spheres,
     discs: Discs,
     solids: Solids,
+    /// Circles on the map round the other solids.
+    hulls: Discs,
     vortices: VortexField,
 }
 
@@ -144,7 +163,8 @@ impl World {
                 }
             }
         }
-        let (mut spheres, mut discs, mut solids) = (Spheres::default(), Discs::default(), Solids::default());
+        let balls = scenario.obstacles.iter().filter(|obstacle| matches!(obstacle, Obstacle::Sphere(_))).count();
+        let (mut spheres, mut discs, mut solids) = (Spheres::with_room(balls), Discs::default(), Solids::default());
         let mut slots = Vec::with_capacity(scenario.obstacles.len());
         let mut bodies = Vec::with_capacity(scenario.obstacles.len());
         for obstacle in &scenario.obstacles {
@@ -186,12 +206,27 @@ impl World {
             };
             numbers[kind].push(number as u32);
         }
-        let extents = scenario.obstacles.iter().map(Obstacle::extent_m).collect();
+        let extents: Vec<f64> = scenario.obstacles.iter().map(Obstacle::extent_m).collect();
+        let mut hulls = Discs::default();
+        for i in numbers[2].iter().map(|number| *number as usize) {
+            hulls.push([bodies[i].base[0], bodies[i].base[1]], extents[i]);
+        }
         let fastest_obstacle = bodies.iter().map(|body| norm(body.velocity)).fold(0.0, f64::max);
         let manoeuvres = scenario.obstacles.iter().filter_map(Obstacle::manoeuvre);
         let fastest_obstacle = manoeuvres.map(Manoeuvre::fastest_mps).fold(fastest_obstacle, f64::max);
-        let fixed =
-            Arc::new(Fixed { scenario, floor, gridded, jets, uniform, steady, extents, numbers, fastest_obstacle });
+        let exact_solids = solids.shapes().iter().all(|shape| !matches!(shape, Solid::Superquadric(_)));
+        let fixed = Arc::new(Fixed {
+            scenario,
+            floor,
+            gridded,
+            jets,
+            uniform,
+            steady,
+            extents,
+            numbers,
+            fastest_obstacle,
+            exact_solids,
+        });
         Self {
             fixed,
             seed: 0,
@@ -204,6 +239,7 @@ impl World {
             spheres,
             discs,
             solids,
+            hulls,
             vortices,
         }
     }
@@ -303,8 +339,20 @@ impl World {
 
     /// Velocity (m/s) of obstacle `i` at the present time, turned about by the walls it has met.
     pub fn obstacle_velocity(&self, i: usize) -> Vec3 {
+        if self.fixed.fastest_obstacle == 0.0 {
+            return [0.0; 3];
+        }
         let manoeuvre = self.fixed.scenario.obstacles[i].manoeuvre();
         self.bodies[i].velocity(manoeuvre, self.times(), &self.fixed.scenario.domain)
+    }
+
+    /// Whether obstacle `i` reaches through all depths, so that only the distance on the map counts.
+    fn is_flat(&self, i: usize) -> bool {
+        match self.slots[i] {
+            Slot::Sphere(_) => false,
+            Slot::Disc(_) => true,
+            Slot::Solid(slot) => !matches!(self.solids.shapes()[slot], Solid::Superquadric(_)),
+        }
     }
 
     /// Radius (m) of a ball or circle that holds each obstacle.
@@ -341,11 +389,14 @@ impl World {
     /// Puts everything that moves where it belongs now.
     fn refresh(&mut self) {
         for i in 0..self.bodies.len() {
-            let position = self.place_obstacle(i);
+            let position = self.obstacle_position(i);
             match self.slots[i] {
                 Slot::Sphere(slot) => self.spheres.place(slot, position),
                 Slot::Disc(slot) => self.discs.place(slot, [position[0], position[1]]),
-                Slot::Solid(slot) => self.solids.place(slot, position),
+                Slot::Solid(slot) => {
+                    self.solids.place(slot, position);
+                    self.hulls.place(slot, [position[0], position[1]]);
+                }
             }
         }
         self.spheres.arrange();
@@ -358,7 +409,12 @@ impl World {
     /// Velocity of the water (m/s, horizontal) at a point (m) at the present time.
     #[inline]
     pub fn current(&self, point: Vec3) -> Vec2 {
-        let vortices = self.vortices.velocity(point[0], point[1]);
+        self.flowing(self.vortices.velocity(point[0], point[1]), point)
+    }
+
+    /// The same where the velocity of the vortices (m/s) is known.
+    #[inline]
+    pub fn flowing(&self, vortices: Vec2, point: Vec3) -> Vec2 {
         let mut sum = [self.fixed.uniform[0] + vortices[0], self.fixed.uniform[1] + vortices[1]];
         for jet in &self.fixed.jets {
             let velocity = jet_velocity(jet, point[0], point[1], self.time_s);
@@ -385,10 +441,37 @@ impl World {
         self.fixed.floor.clearance(point, self.solids.clearance(point, round.min(nearest)))
     }
 
+    /// [`World::clearance_within`] at places that follow one another: the solid that was nearest at the last one is
+    /// the nearest at this one, too, unless enough has moved for another to have overtaken it.
+    pub fn clearance_along(&self, point: Vec3, nearest: f64, neighbour: &mut Option<Neighbour>) -> f64 {
+        if !self.fixed.exact_solids {
+            return self.clearance_within(point, nearest);
+        }
+        let still = neighbour.as_ref().and_then(|neighbour| {
+            let clearance = match neighbour.slot {
+                Slot::Sphere(i) => self.spheres.clearance_of(i, point),
+                Slot::Disc(i) => self.discs.clearance_of(i, point),
+                Slot::Solid(i) => self.solids.shapes()[i].clearance(point),
+            };
+            let approach = self.fixed.fastest_obstacle * (self.time_s - neighbour.time_s).abs();
+            let rivals = neighbour.rivals_m - distance(point, neighbour.at) - approach;
+            (clearance < rivals - ROUNDING_M).then_some(clearance)
+        });
+        let clearance = still.unwrap_or_else(|| {
+            let round = self.spheres.nearest(point).named(Slot::Sphere);
+            let round = round.and(self.discs.nearest(point).named(Slot::Disc));
+            let solids = self.solids.nearest(point, round.clearance.min(nearest)).named(Slot::Solid);
+            let found = round.and(solids);
+            let (rivals_m, at, time_s) = (found.rivals, point, self.time_s);
+            *neighbour = found.index.map(|slot| Neighbour { slot, rivals_m, at, time_s });
+            found.clearance
+        });
+        self.fixed.floor.clearance(point, clearance.min(nearest))
+    }
+
     /// Whether clearance is the distance itself, which changes by no more than one moves; a lower bound may.
     pub fn has_exact_clearance(&self) -> bool {
-        let exact = |shape: &Solid| !matches!(shape, Solid::Superquadric(_));
-        matches!(self.fixed.floor, Floor::None | Floor::Flat(_)) && self.solids().iter().all(exact)
+        matches!(self.fixed.floor, Floor::None | Floor::Flat(_)) && self.fixed.exact_solids
     }
 
     /// Depth of the sea floor (m) at (x, y); infinite where there is none.
@@ -415,7 +498,7 @@ impl World {
         match &fixed.scenario.change {
             Some(Change::Table(table)) => {
                 let phase = &table.phases[self.changes.len()];
-                self.move_obstacles(vehicle_m, |i, _| phase.obstacles_m[i]);
+                self.move_obstacles(vehicle_m, |_, i, _| phase.obstacles_m[i]);
                 for (eddy, centre) in self.eddies.iter_mut().zip(&phase.vortices_m) {
                     eddy.base = [centre[0], centre[1], 0.0];
                 }
@@ -429,7 +512,7 @@ impl World {
     }
 
     /// Gives each obstacle a new base, unless that would come too near.
-    fn move_obstacles(&mut self, vehicle_m: Vec3, mut target: impl FnMut(usize, Vec3) -> Vec3) {
+    fn move_obstacles(&mut self, vehicle_m: Vec3, mut target: impl FnMut(&Self, usize, Vec3) -> Vec3) {
         let fixed = Arc::clone(&self.fixed);
         let (margin, hold) = fixed.scenario.change.as_ref().map_or((0.0, Hold::All), Change::hold);
         let mission = &fixed.scenario.missions[self.mission];
@@ -438,12 +521,12 @@ impl World {
             Hold::All => &protected[..],
             Hold::Vehicle => &protected[..1],
         };
-        for (i, obstacle) in fixed.scenario.obstacles.iter().enumerate() {
-            let old = self.place_obstacle(i);
-            let new = target(i, old);
+        for i in 0..self.bodies.len() {
+            let (old, flat, room) = (self.obstacle_position(i), self.is_flat(i), fixed.extents[i] + margin);
+            let new = target(self, i, old);
             let near = |point: &Vec3| {
-                let point = if obstacle.is_flat() { [point[0], point[1], new[2]] } else { *point };
-                distance(new, point) < obstacle.extent_m() + margin
+                let point = if flat { [point[0], point[1], new[2]] } else { *point };
+                distance(new, point) < room
             };
             self.bodies[i].base = if protected.iter().any(near) { old } else { new };
         }
@@ -454,12 +537,16 @@ impl World {
         let domain = &fixed.scenario.domain;
         let mut stream = Stream::new(self.seed, Purpose::Change, self.changes.len() as u32 + 1);
         let axes = usize::from(fixed.scenario.dimensions);
-        self.move_obstacles(vehicle_m, |i, old| {
+        let free = |world: &Self, i: usize| if world.is_flat(i) { 2 } else { axes };
+        let obstacles = 0..self.bodies.len();
+        let mut moved: Vec<f64> =
+            obstacles.flat_map(|i| self.obstacle_position(i).into_iter().take(free(self, i))).collect();
+        stream.disturb(&mut moved, redraw.obstacle_step_m);
+        let mut moved = moved.into_iter();
+        self.move_obstacles(vehicle_m, |world, i, old| {
             let mut new = old;
-            let free = if fixed.scenario.obstacles[i].is_flat() { 2 } else { axes };
-            for axis in 0..free {
-                let step = stream.normal(0.0, redraw.obstacle_step_m);
-                new[axis] = (old[axis] + step).clamp(domain.min_m[axis], domain.max_m[axis]);
+            for (axis, value) in moved.by_ref().take(free(world, i)).enumerate() {
+                new[axis] = value.clamp(domain.min_m[axis], domain.max_m[axis]);
             }
             new
         });

@@ -3,7 +3,8 @@
 use auv_planners::Control;
 
 use super::Autoreset;
-use crate::episode::Episode;
+use crate::episode::flight::Leg;
+use crate::episode::{Departure, Episode};
 use crate::error::EnvError;
 use crate::measures::{Measures, Outcome, Record};
 use crate::source::Source;
@@ -13,6 +14,8 @@ use crate::source::Source;
 pub struct Lane {
     pub(super) episode: Option<Episode>,
     pub(super) error: Option<EnvError>,
+    /// The action whose leg is being flown.
+    departure: Option<Departure>,
     /// Reward of the last step.
     pub reward: f64,
     /// Whether the last step ended an episode.
@@ -29,7 +32,16 @@ impl Lane {
     /// A lane without an episode.
     pub(super) fn empty() -> Self {
         let (now, last) = (Measures::default(), Measures::default());
-        Self { episode: None, error: None, reward: 0.0, ended: false, now, last, last_observation: Vec::new() }
+        Self {
+            episode: None,
+            error: None,
+            departure: None,
+            reward: 0.0,
+            ended: false,
+            now,
+            last,
+            last_observation: Vec::new(),
+        }
     }
 
     /// Whether its episode is over.
@@ -66,8 +78,8 @@ impl Lane {
         }
     }
 
-    /// Flies one leg, or begins again, as `autoreset` says.
-    pub(super) fn step(
+    /// Takes an action up to its leg, or begins again, as `autoreset` says.
+    pub(super) fn depart(
         &mut self,
         action: &[f32],
         autoreset: Autoreset,
@@ -75,18 +87,32 @@ impl Lane {
         begin: impl Fn(&mut Self, &mut [f32]),
         observation: &mut [f32],
     ) {
+        self.departure = None;
         if autoreset == Autoreset::NextStep && self.over() {
             begin(self, observation);
             return;
         }
         let Some(episode) = &mut self.episode else { return };
-        match episode.act(action, control) {
-            Ok(reward) => self.reward = reward,
-            Err(error) => {
-                self.error = Some(error);
-                return;
-            }
+        match episode.depart(action, control) {
+            Ok(departure) => self.departure = Some(departure),
+            Err(error) => self.error = Some(error),
         }
+    }
+
+    /// The leg that is to be flown now, if there is one.
+    pub(super) fn leg(&mut self) -> Option<Leg<'_>> {
+        self.episode.as_mut()?.leg(self.departure.as_ref()?)
+    }
+
+    /// After the leg: reward, measures and observation, and another episode if `autoreset` says so.
+    pub(super) fn arrive(
+        &mut self,
+        autoreset: Autoreset,
+        begin: impl Fn(&mut Self, &mut [f32]),
+        observation: &mut [f32],
+    ) {
+        let (Some(departure), Some(episode)) = (self.departure.take(), &mut self.episode) else { return };
+        self.reward = episode.arrive(&departure);
         episode.observe(observation);
         self.now = episode.measures();
         self.ended = self.now.outcome != Outcome::Running;

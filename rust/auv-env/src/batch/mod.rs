@@ -7,15 +7,14 @@ mod lane;
 mod pool;
 
 use std::cell::RefCell;
-use std::sync::atomic::AtomicBool;
 
 use auv_planners::Control;
-use rayon::prelude::*;
+use auv_world::lanes::LANES;
 
 pub use lane::Lane;
 use pool::Pool;
 
-use crate::episode::Episode;
+use crate::episode::{Episode, flight};
 use crate::error::EnvError;
 use crate::measures::Record;
 use crate::observation::Mode;
@@ -35,9 +34,14 @@ pub enum Autoreset {
 /// Environments between two looks at whether to stop.
 const AT_ONCE: usize = 1024;
 
-/// Environments that a thread takes at a time, at most: legs and new worlds differ so much in length that with
-/// more of them threads would wait for each other at the end of a step.
-const BY_ONE_THREAD: usize = 4;
+/// How many of `count` environments a thread takes at a time: enough to fill the lanes of a flight for most of it, and
+/// few enough that threads do not wait long for each other at the end of a step. Who plans takes a thread of its own.
+fn together(mode: Mode, count: usize, threads: usize) -> usize {
+    match mode {
+        Mode::Waypoint => (count / (4 * threads)).clamp(LANES, 4 * LANES).min(count.div_ceil(threads)).max(1),
+        Mode::Replan => 1,
+    }
+}
 
 /// Many environments.
 #[derive(Debug)]
@@ -47,6 +51,8 @@ pub struct Batch {
     record: Record,
     lanes: Vec<Lane>,
     pool: Pool,
+    /// Environments that a thread takes at a time.
+    together: usize,
     /// Entries of an action and of an observation.
     widths: (usize, usize),
 }
@@ -56,7 +62,9 @@ impl Batch {
     pub fn new(source: Source, count: usize, threads: usize, autoreset: Autoreset, record: Record) -> Self {
         let widths = source.widths();
         let lanes = (0..count).map(|_| Lane::empty()).collect();
-        Self { source, autoreset, record, lanes, pool: Pool::new(threads.min(count)), widths }
+        let pool = Pool::new(threads.min(count));
+        let together = together(source.mode(), count, pool.threads());
+        Self { source, autoreset, record, lanes, pool, together, widths }
     }
 
     /// The environments.
@@ -114,9 +122,14 @@ impl Batch {
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<(), EnvError> {
         let (source, record) = (self.source.clone(), self.record);
-        self.each(observations, stop, |index, lane, observation, control| match seeds[index] {
-            Some(seed) => lane.begin(&source, seed, record, control, observation),
-            None => lane.look(observation),
+        let width = self.widths.1;
+        self.each(observations, stop, |first, lanes, rows, control| {
+            for (i, (lane, row)) in lanes.iter_mut().zip(rows.chunks_exact_mut(width)).enumerate() {
+                match seeds[first + i] {
+                    Some(seed) => lane.begin(&source, seed, record, control, row),
+                    None => lane.look(row),
+                }
+            }
         })
     }
 
@@ -141,45 +154,47 @@ impl Batch {
             }
         }
         let (source, record) = (self.source.clone(), self.record);
-        self.each(observations, stop, |index, lane, observation, control| {
-            let action = &actions[index * width..(index + 1) * width];
-            let begin = |lane: &mut Lane, observation: &mut [f32]| {
-                lane.begin(&source, seeds[index], record, control, observation);
+        let row_width = self.widths.1;
+        self.each(observations, stop, |first, lanes, rows, control| {
+            let begin = |i: usize| {
+                let seed = seeds[first + i];
+                let source = &source;
+                move |lane: &mut Lane, row: &mut [f32]| lane.begin(source, seed, record, control, row)
             };
-            lane.step(action, autoreset, control, begin, observation);
+            for (i, (lane, row)) in lanes.iter_mut().zip(rows.chunks_exact_mut(row_width)).enumerate() {
+                let action = &actions[(first + i) * width..][..width];
+                lane.depart(action, autoreset, control, begin(i), row);
+            }
+            flight::fly(&mut lanes.iter_mut().filter_map(Lane::leg).collect::<Vec<_>>());
+            for (i, (lane, row)) in lanes.iter_mut().zip(rows.chunks_exact_mut(row_width)).enumerate() {
+                lane.arrive(autoreset, begin(i), row);
+            }
         })
     }
 
-    /// Works on every environment and its row of `observations`, on all threads, asking now and then whether to
-    /// `stop`.
+    /// Works on all environments and their rows of `observations`, some at a time, on all threads, asking now and
+    /// then whether to `stop`. `work` gets the number of the first of them.
     fn each(
         &mut self,
         observations: &mut [f32],
         stop: &mut dyn FnMut() -> bool,
-        work: impl Fn(usize, &mut Lane, &mut [f32], &Control<'_>) + Sync,
+        work: impl Fn(usize, &mut [Lane], &mut [f32], &Control<'_>) + Sync,
     ) -> Result<(), EnvError> {
-        let width = self.widths.1;
+        let (width, together) = (self.widths.1, self.together);
         let chunks = self.lanes.chunks_mut(AT_ONCE).zip(observations.chunks_mut(AT_ONCE * width));
         for (chunk, (lanes, rows)) in chunks.enumerate() {
             let first = chunk * AT_ONCE;
+            let groups = lanes.chunks_mut(together).zip(rows.chunks_mut(together * width)).enumerate();
+            let one = |(i, (lanes, rows)): (usize, (&mut [Lane], &mut [f32])), control: &Control<'_>| {
+                work(first + i * together, lanes, rows, control);
+            };
             match self.pool.running() {
                 None => {
                     let asked = RefCell::new(&mut *stop);
                     let ask = || (asked.borrow_mut())();
-                    let control = Control::ask(&ask);
-                    for (i, (lane, row)) in lanes.iter_mut().zip(rows.chunks_exact_mut(width)).enumerate() {
-                        work(first + i, lane, row, &control);
-                    }
+                    groups.for_each(|group| one(group, &Control::ask(&ask)));
                 }
-                Some(threads) => {
-                    let stopped = AtomicBool::new(false);
-                    let one = |(i, (lane, row)): (usize, (&mut Lane, &mut [f32]))| {
-                        work(first + i, lane, row, &Control::flag(&stopped));
-                    };
-                    let rows = rows.par_chunks_exact_mut(width);
-                    let all = || lanes.par_iter_mut().zip(rows).enumerate().with_max_len(BY_ONE_THREAD).for_each(one);
-                    pool::watched(threads, &stopped, stop, all);
-                }
+                Some(others) => pool::share(others, groups, stop, one),
             }
             if let Some((i, error)) = lanes.iter_mut().enumerate().find_map(|(i, lane)| Some((i, lane.error.take()?))) {
                 return Err(error.of(first + i));

@@ -3,16 +3,21 @@
 //! A process that forks takes a pool's memory along but not its threads: work given to it would wait for
 //! ever. So a pool knows whose it is, and another process makes its own.
 
+use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::Duration;
+use std::sync::mpsc::{RecvTimeoutError, TryRecvError, channel};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
+use auv_planners::Control;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// Work is watched over at this interval.
+/// Others' work is watched over at this interval.
 const BETWEEN_QUESTIONS: Duration = Duration::from_millis(50);
+/// A thread stays awake for so long when others are about to finish.
+const AWAKE: Duration = Duration::from_micros(200);
 
-/// A number of threads, started when they are first needed.
+/// A number of threads, the caller's among them; the others start when they are first needed.
 #[derive(Debug)]
 pub struct Pool {
     threads: usize,
@@ -30,7 +35,7 @@ impl Pool {
         self.threads
     }
 
-    /// The threads of this process; none if the caller's own is enough, or if the system gives no more.
+    /// The other threads of this process; none if the caller's own is enough, or if the system gives no more.
     pub fn running(&mut self) -> Option<&ThreadPool> {
         if self.threads == 1 {
             return None;
@@ -40,7 +45,7 @@ impl Pool {
             self.leave();
             let name = |i| format!("auvgym-{i}");
             self.running = ThreadPoolBuilder::new()
-                .num_threads(self.threads)
+                .num_threads(self.threads - 1)
                 .thread_name(name)
                 .build()
                 .ok()
@@ -59,19 +64,45 @@ impl Pool {
     }
 }
 
-/// Work on the pool's threads, while this one asks now and then whether to `stop` and says so by the flag.
-pub fn watched(threads: &ThreadPool, stopped: &AtomicBool, stop: &mut dyn FnMut() -> bool, work: impl FnOnce() + Send) {
-    let (done, finished) = channel();
-    threads.in_place_scope(|scope| {
-        scope.spawn(move |_| {
-            work();
-            // Nobody waits any more after a panic, which the scope passes on.
-            let _sent = done.send(());
-        });
+/// Works through `items` on the pool's threads and on this one, which asks now and then whether to `stop` and tells
+/// the others.
+pub fn share<T: Send>(
+    others: &ThreadPool,
+    items: impl Iterator<Item = T> + Send,
+    stop: &mut dyn FnMut() -> bool,
+    work: impl Fn(T, &Control<'_>) + Sync,
+) {
+    let (stopped, queue) = (AtomicBool::new(false), Mutex::new(items));
+    let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let (working, finished) = channel::<()>();
+    others.in_place_scope(|scope| {
+        for _ in 0..others.current_num_threads() {
+            let (working, next, work, stopped) = (working.clone(), &next, &work, &stopped);
+            scope.spawn(move |_| {
+                while let Some(item) = next() {
+                    work(item, &Control::flag(stopped));
+                }
+                drop(working);
+            });
+        }
+        drop(working);
+        let stop = RefCell::new(stop);
+        let ask = || {
+            let now = (stop.borrow_mut())();
+            stopped.fetch_or(now, Ordering::Relaxed);
+            now
+        };
+        while let Some(item) = next() {
+            work(item, &Control::ask(&ask));
+            ask();
+        }
+        // The others are at their last items: mostly sooner done than this thread would be awake again.
+        let begun = Instant::now();
+        while begun.elapsed() < AWAKE && finished.try_recv() == Err(TryRecvError::Empty) {
+            std::hint::spin_loop();
+        }
         while finished.recv_timeout(BETWEEN_QUESTIONS) == Err(RecvTimeoutError::Timeout) {
-            if stop() {
-                stopped.store(true, Ordering::Relaxed);
-            }
+            ask();
         }
     });
 }

@@ -1,6 +1,8 @@
 use super::*;
 use crate::source::Source;
 use auv_world::families::Parameters;
+use auv_world::math::add_scaled;
+use auv_world::rng::{Purpose, Stream};
 
 fn episode(family: &str, parameters: Parameters, seed: u64) -> Episode {
     Source::family(family, parameters).unwrap().episode(seed).unwrap()
@@ -69,6 +71,86 @@ fn min_clearance_is_that_of_the_trail() {
                 assert!(found >= least - 1e-6 && (found - least < 50.0 || least > 0.0), "{found} {least}");
                 assert_eq!(found <= 0.0, least <= 0.0);
             }
+        }
+    }
+}
+
+/// A leg as `spec` has it, one vehicle and one tick after another: what flying side by side must give.
+fn flown_alone(episode: &mut Episode, waypoint: Vec3) {
+    let flight = episode.world.scenario().episode.clone();
+    let (tick_s, first) = (flight.tick_s, episode.state.ticks);
+    episode.state.waypoint = Some(waypoint);
+    loop {
+        let (world, state) = (&mut episode.world, &mut episode.state);
+        let current = world.current(state.position);
+        let order = episode.helm.steer(state.position, state.heading, waypoint, current);
+        let mut position = add_scaled(state.position, order.speed * tick_s, order.heading);
+        position[0] += current[0] * tick_s;
+        position[1] += current[1] * tick_s;
+        position[2] = position[2].max(world.scenario().domain.min_m[2].min(state.position[2]));
+        let travelled = distance(state.position, position);
+        (state.position, state.heading) = (position, order.heading);
+        state.ticks += 1;
+        state.time_s = state.ticks as f64 * tick_s;
+        state.energy_j += world.scenario().vehicle.power_w(order.speed) * tick_s;
+        state.path_length_m += travelled;
+        state.since_change_m += travelled;
+        state.trail.push(position);
+        world.set_time(state.time_s);
+        state.clearance_left_m -= travelled + world.fastest_obstacle_mps() * tick_s;
+        if state.clearance_left_m <= state.min_clearance_m {
+            state.clearance_left_m = world.clearance_within(position, state.min_clearance_m + episode.lookout_m);
+            state.min_clearance_m = state.min_clearance_m.min(state.clearance_left_m);
+        }
+        episode.judge();
+        let (state, elapsed) = (&episode.state, (episode.state.ticks - first) as f64 * tick_s);
+        let captured = elapsed >= flight.minimum_leg_s && distance(state.position, waypoint) <= flight.capture_radius_m;
+        if state.outcome != Outcome::Running || state.map_changed || captured || elapsed >= flight.maximum_leg_s {
+            return;
+        }
+    }
+}
+
+#[test]
+fn legs_side_by_side_are_what_each_is_alone() {
+    let moving = Parameters {
+        obstacle_speed_mps: Some(0.4),
+        vortex_drift_mps: Some(0.1),
+        current_ratio: Some(1.4),
+        ..Parameters::default()
+    };
+    let vessels = Parameters { vessels: Some(6), ..Parameters::default() };
+    let mut stream = Stream::new(11, Purpose::Planner, 0);
+    for (family, parameters) in [
+        ("lfhh-2d", Parameters::default()),
+        ("lfhh-3d", Parameters::default()),
+        ("lfhh-2d", moving.clone()),
+        ("lfhh-3d", moving),
+        ("harbor", vessels),
+        ("afhh", Parameters::default()),
+        ("iifds", Parameters::default()),
+    ] {
+        let mut together: Vec<Episode> = (0..11).map(|seed| episode(family, parameters.clone(), seed)).collect();
+        let mut alone = together.clone();
+        for _ in 0..40 {
+            let (mut legs, reach) = (Vec::new(), together[0].world.scenario().episode.reach_m);
+            for (one, other) in together.iter_mut().zip(&mut alone) {
+                if one.state.outcome != Outcome::Running {
+                    continue;
+                }
+                // Near ones too, so that station is kept.
+                let size = if stream.unit() < 0.2 { 0.02 } else { 1.0 };
+                let offset = std::array::from_fn(|_| stream.uniform(-size, size));
+                let waypoint = one.clip(add_scaled(one.state.position, reach, offset));
+                (one.state.map_changed, other.state.map_changed) = (false, false);
+                flown_alone(other, waypoint);
+                legs.push(Leg::towards(one, waypoint));
+            }
+            flight::fly(&mut legs);
+        }
+        for (one, other) in together.iter().zip(&alone) {
+            assert!(one.state == other.state, "{family} {:?}", one.world.seed());
+            assert_eq!(one.world.changes(), other.world.changes());
         }
     }
 }

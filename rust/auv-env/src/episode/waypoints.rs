@@ -40,7 +40,7 @@ impl Episode {
     }
 
     /// A point moved into the box, `waypoint_margin_m` away from its side walls, surface and bottom.
-    fn clip(&self, mut point: Vec3) -> Vec3 {
+    pub(super) fn clip(&self, mut point: Vec3) -> Vec3 {
         let (domain, margin) = (&self.world.scenario().domain, self.world.scenario().episode.waypoint_margin_m);
         for axis in 0..3 {
             let (low, high) = (domain.min_m[axis], domain.max_m[axis]);

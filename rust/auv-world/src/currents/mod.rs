@@ -8,4 +8,4 @@ mod vortices;
 pub use draw::scale_to_peak;
 pub use gridded::GriddedField;
 pub use jet::velocity as jet_velocity;
-pub use vortices::{RING_RADIUS, RING_SPEED, VortexField};
+pub use vortices::{RING_RADIUS, RING_SPEED, VortexField, VortexLanes};

@@ -1,8 +1,8 @@
 //! Lamb-Oseen vortices (LFHH eq. 3-5), as a structure of arrays.
 
-use wide::f64x2;
+use wide::{f64x2, f64x4};
 
-use crate::lanes::{Column, exp_pair};
+use crate::lanes::{Column, LANES, exp_pair};
 use crate::math::Vec2;
 
 /// Speed of a Lamb-Oseen vortex is greatest at this many core radii from its centre ...
@@ -108,9 +108,73 @@ fn falloff(r2: f64x2, inverse_core2: f64x2) -> f64x2 {
     central.select(inverse_core2, factor)
 }
 
+/// The vortices of four worlds, a lane each.
+#[derive(Debug, Clone, Default)]
+pub struct VortexLanes {
+    rows: Vec<VortexRow>,
+}
+
+/// One vortex of each of four worlds.
+#[derive(Debug, Clone, Copy)]
+struct VortexRow {
+    x: [f64; LANES],
+    y: [f64; LANES],
+    strength: [f64; LANES],
+    inverse_core2: [f64; LANES],
+}
+
+impl VortexLanes {
+    /// Puts the vortices of a world into a lane.
+    pub fn put(&mut self, lane: usize, field: &VortexField) {
+        if self.rows.len() < field.len() {
+            let still =
+                VortexRow { x: [0.0; LANES], y: [0.0; LANES], strength: [0.0; LANES], inverse_core2: [1.0; LANES] };
+            self.rows.resize(field.len(), still);
+        }
+        for (i, row) in self.rows.iter_mut().enumerate() {
+            if i < field.len() {
+                (row.x[lane], row.y[lane]) = (field.x[i], field.y[i]);
+                (row.strength[lane], row.inverse_core2[lane]) = (field.strength[i], field.inverse_core2[i]);
+            } else {
+                row.strength[lane] = 0.0;
+            }
+        }
+    }
+
+    /// Velocity (m/s) at one point of each world: bit for bit [`VortexField::velocity`].
+    #[inline(always)]
+    pub fn velocity(&self, x: [f64; LANES], y: [f64; LANES]) -> [f64x4; 2] {
+        let (x, y) = (halves(x), halves(y));
+        // Every fourth vortex has a sum of its own there, too.
+        let (mut u, mut v) = ([[f64x2::ZERO; 2]; LANES], [[f64x2::ZERO; 2]; LANES]);
+        for rows in self.rows.chunks(LANES) {
+            for (i, row) in rows.iter().enumerate() {
+                let (cx, cy) = (halves(row.x), halves(row.y));
+                let (strength, inverse_core2) = (halves(row.strength), halves(row.inverse_core2));
+                for half in 0..2 {
+                    let (dx, dy) = (x[half] - cx[half], y[half] - cy[half]);
+                    let factor = strength[half] * falloff(dx * dx + dy * dy, inverse_core2[half]);
+                    u[i][half] -= factor * dy;
+                    v[i][half] += factor * dx;
+                }
+            }
+        }
+        [u, v].map(|[a, b, c, d]| {
+            let [[p, q], [r, s]] = [0, 1].map(|half| ((a[half] + b[half]) + (c[half] + d[half])).to_array());
+            f64x4::new([p, q, r, s])
+        })
+    }
+}
+
+#[inline(always)]
+fn halves([a, b, c, d]: [f64; LANES]) -> [f64x2; 2] {
+    [f64x2::new([a, b]), f64x2::new([c, d])]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn ring_speed_and_centre() {
@@ -154,5 +218,33 @@ mod tests {
         }
         let total = field.velocity(300.0, 700.0);
         assert!((total[0] - sum[0]).abs() < 1e-15 && (total[1] - sum[1]).abs() < 1e-15);
+    }
+
+    proptest! {
+        #[test]
+        fn four_worlds_side_by_side_are_what_each_is_alone(
+            seeds in prop::array::uniform4(prop::collection::vec(prop::array::uniform4(-1.0..1.0_f64), 0..11)),
+            points in prop::array::uniform4(prop::array::uniform2(-2e4..2e4_f64)),
+            again in 0..4_usize,
+        ) {
+            let fields = seeds.map(|vortices| {
+                let mut field = VortexField::default();
+                for [x, y, eta, zeta] in vortices {
+                    field.push([2e4 * x, 2e4 * y], 1e4 * eta, 3000.0 + 2500.0 * zeta);
+                }
+                field
+            });
+            let mut lanes = VortexLanes::default();
+            (0..LANES).for_each(|lane| lanes.put(lane, &fields[3 - lane]));
+            (0..LANES).for_each(|lane| lanes.put(lane, &fields[lane]));
+            lanes.put(again, &fields[again]);
+            let [x, y] = [0, 1].map(|axis| points.map(|point| point[axis]));
+            let together = lanes.velocity(x, y).map(f64x4::to_array);
+            for lane in 0..LANES {
+                let alone = fields[lane].velocity(points[lane][0], points[lane][1]);
+                // A sum of nothing may be either zero.
+                prop_assert_eq!([0, 1].map(|axis| (0.0 + together[axis][lane]).to_bits()), alone.map(|v| (0.0 + v).to_bits()));
+            }
+        }
     }
 }

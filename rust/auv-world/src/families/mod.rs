@@ -154,6 +154,7 @@ pub fn world(family: &str, seed: u64, parameters: &Parameters) -> Result<World, 
 mod tests {
     use super::draw::MARGIN;
     use super::*;
+    use crate::rng::{Purpose, Stream};
 
     #[test]
     fn same_seed_same_scenario_and_it_is_allowed() {
@@ -202,6 +203,32 @@ mod tests {
             world.apply_change(vehicle);
             assert!(world.spheres().clearance(vehicle) >= 1e3 * MARGIN - 1e-9);
             assert!(world.spheres().clearance(world.mission().goal_m) >= 1e3 * MARGIN - 1e-9);
+        }
+    }
+
+    /// A random walk in worlds at rest and in motion: following the nearest solid changes no bit of the clearance.
+    #[test]
+    fn following_a_neighbour_finds_what_looking_round_does() {
+        for family in FAMILIES {
+            for speed in [None, Some(0.8)] {
+                let vessels = (family == "harbor" && speed.is_some()).then_some(6);
+                let moving = Parameters { obstacle_speed_mps: speed, vessels, ..Parameters::default() };
+                let mut world = world(family, 4, &moving).unwrap();
+                let mut stream = Stream::new(9, Purpose::Planner, 0);
+                let (low, high) = (world.scenario().domain.min_m, world.scenario().domain.max_m);
+                let stride = 2e-3 * (high[1] - low[1]);
+                let (mut point, mut neighbour) = (world.mission().start_m, None);
+                for tick in 0..4000 {
+                    world.set_time(15.0 * f64::from(tick));
+                    for axis in 0..usize::from(world.scenario().dimensions) {
+                        point[axis] = (point[axis] + stream.uniform(-stride, stride)).clamp(low[axis], high[axis]);
+                    }
+                    let within = if tick % 3 == 0 { f64::INFINITY } else { 40.0 * stride };
+                    let followed = world.clearance_along(point, within, &mut neighbour);
+                    let looked = world.clearance_within(point, within);
+                    assert_eq!(followed.to_bits(), looked.to_bits(), "{family} {speed:?} {tick}");
+                }
+            }
         }
     }
 

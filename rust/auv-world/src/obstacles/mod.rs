@@ -3,12 +3,14 @@
 //! Spheres and discs, which the section worlds have by the dozen, are kept as structures of arrays;
 //! the other shapes one by one.
 
+mod nearest;
 mod outline;
 pub mod polygon;
 mod round;
 mod solids;
 mod superquadric;
 
+pub use nearest::Nearest;
 pub use round::{BeamColumns, Beams, Discs, Echo, Spheres};
 pub use solids::Solids;
 

@@ -2,8 +2,9 @@
 
 use wide::f64x4;
 
+use super::nearest::{Lanes, Nearest};
 use crate::lanes::{Column, LANES, least};
-use crate::math::{Vec2, Vec3};
+use crate::math::{Vec2, Vec3, distance};
 
 /// Balls at one time.
 #[derive(Debug, Clone, Default)]
@@ -50,6 +51,13 @@ pub struct Echo {
     offset: Vec3,
     /// Squared offset less the squared radius (m^2).
     outside: f64,
+}
+
+impl Echo {
+    /// Its centre from the sonar (m), a disc's on the map.
+    pub fn offset(&self) -> Vec3 {
+        self.offset
+    }
 }
 
 /// Keeps those of four whose bits in `near` are set.
@@ -104,6 +112,13 @@ fn chord(along: f64x4, outside: f64, square: f64x4, nearest: f64x4) -> f64x4 {
 }
 
 impl Spheres {
+    /// Room for `count` balls.
+    pub fn with_room(count: usize) -> Self {
+        let column = || Vec::with_capacity(count);
+        let (order, slabs) = (Vec::with_capacity(count), Vec::with_capacity(count.div_ceil(LANES)));
+        Self { x: column(), y: column(), z: column(), radius: column(), order, slabs, ..Self::default() }
+    }
+
     /// Appends a ball; [`Spheres::arrange`] must follow before a query.
     pub fn push(&mut self, centre: Vec3, radius: f64) {
         self.order.push(self.x.len() as u32);
@@ -197,6 +212,39 @@ impl Spheres {
         nearest
     }
 
+    /// Signed distance (m) from a point to ball `i`.
+    #[inline]
+    pub fn clearance_of(&self, i: usize, point: Vec3) -> f64 {
+        distance(point, [self.x[i], self.y[i], self.z[i]]) - self.radius[i]
+    }
+
+    /// The nearest.
+    pub fn nearest(&self, point: Vec3) -> Nearest<usize> {
+        let at = point.map(f64x4::splat);
+        let mut lanes = Lanes::new();
+        let see = |lanes: &mut Lanes, i: usize| {
+            let slab = &self.slabs[i];
+            let (dx, dy, dz) = (at[0] - slab.x, at[1] - slab.y, at[2] - slab.z);
+            lanes.see(i, (dx * dx + dy * dy + dz * dz).sqrt() - slab.radius);
+        };
+        let middle = self.middle(point[1]);
+        let (first, last) = (middle.saturating_sub(AROUND), (middle + AROUND).min(self.slabs.len()));
+        (first..last).for_each(|i| see(&mut lanes, i));
+        for i in last..self.slabs.len() {
+            if self.slabs[i].low - point[1] >= lanes.found().rivals {
+                break;
+            }
+            see(&mut lanes, i);
+        }
+        for i in (0..first).rev() {
+            if point[1] - self.slabs[i].high >= lanes.found().rivals {
+                break;
+            }
+            see(&mut lanes, i);
+        }
+        lanes.found().named(|i| self.order[i] as usize)
+    }
+
     /// The slab where y should be. Where to begin decides only how soon the rest can be passed over: a guess.
     #[inline]
     fn middle(&self, y: f64) -> usize {
@@ -274,6 +322,25 @@ impl Discs {
             nearest.fast_min((dx * dx + dy * dy).sqrt() - radius)
         });
         least(nearest, f64::INFINITY)
+    }
+
+    /// Signed distance (m) from a point to disc `i`.
+    #[inline]
+    pub fn clearance_of(&self, i: usize, point: Vec3) -> f64 {
+        let (dx, dy) = (point[0] - self.x[i], point[1] - self.y[i]);
+        (dx * dx + dy * dy).sqrt() - self.radius[i]
+    }
+
+    /// The nearest.
+    pub fn nearest(&self, point: Vec3) -> Nearest<usize> {
+        let (x, y) = (f64x4::splat(point[0]), f64x4::splat(point[1]));
+        let columns = self.x.chunks().zip(self.y.chunks()).zip(self.radius.chunks());
+        let mut lanes = Lanes::new();
+        for (chunk, ((cx, cy), radius)) in columns.enumerate() {
+            let (dx, dy) = (x - cx, y - cy);
+            lanes.see(chunk, (dx * dx + dy * dy).sqrt() - radius);
+        }
+        lanes.found()
     }
 
     /// Appends the discs nearer than `longest`.

@@ -3,8 +3,9 @@
 use wide::f64x4;
 
 use super::Solid;
+use super::nearest::Nearest;
 use super::polygon::Prism;
-use crate::lanes::{Column, LANES};
+use crate::lanes::{Column, LANES, least};
 use crate::math::Vec3;
 
 /// A box that nothing is near to: padding.
@@ -80,6 +81,27 @@ impl Solids {
             }
         }
         nearest
+    }
+
+    /// The nearest; farther away than `within` (m) perhaps none.
+    pub fn nearest(&self, point: Vec3, within: f64) -> Nearest<usize> {
+        let mut found = Nearest::none(f64::INFINITY);
+        let mut passed_over = f64x4::splat(f64::INFINITY);
+        for (chunk, square) in self.squares(point).enumerate() {
+            let reach = found.clearance.min(within).max(0.0);
+            let near = square.simd_le(f64x4::splat(reach * reach * (1.0 + SLACK)));
+            passed_over = passed_over.fast_min(near.select(passed_over, square));
+            let mut near = near.to_bitmask();
+            while near != 0 {
+                let i = chunk * LANES + near.trailing_zeros() as usize;
+                near &= near - 1;
+                if let Some(shape) = self.shapes.get(i) {
+                    found = found.with(i, shape.clearance(point));
+                }
+            }
+        }
+        let passed_over = least(passed_over, f64::INFINITY).sqrt();
+        Nearest { rivals: found.rivals.min(passed_over), ..found }
     }
 
     fn nearest_box(&self, point: Vec3) -> usize {

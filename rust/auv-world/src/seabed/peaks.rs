@@ -61,11 +61,7 @@ impl PeakFloor {
         // Neighbours share a chunk, so that a point is near few chunks.
         let mut order: Vec<&Peak> = peaks.peaks.iter().collect();
         order.sort_by(|a, b| a.y_m.total_cmp(&b.y_m));
-        let column = |value: fn(&Peak) -> f64| {
-            let mut column = Column::default();
-            order.iter().for_each(|peak| column.push(value(peak), 0.0));
-            column
-        };
+        let column = |value: fn(&Peak) -> f64| Column::of(order.iter().map(|peak| value(peak)), 0.0);
         Self {
             floor_depth: peaks.floor_depth_m,
             x: column(|p| p.x_m),

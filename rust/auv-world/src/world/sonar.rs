@@ -4,7 +4,7 @@ use wide::f64x4;
 
 use super::World;
 use crate::lanes::LANES;
-use crate::math::Vec3;
+use crate::math::{Vec3, sub};
 use crate::obstacles::{BeamColumns, Beams, Discs, Echo, Spheres};
 
 /// Memory that a sonar scan reuses.
@@ -12,6 +12,7 @@ use crate::obstacles::{BeamColumns, Beams, Discs, Echo, Spheres};
 pub struct Scratch {
     spheres: Vec<Echo>,
     discs: Vec<Echo>,
+    hulls: Vec<Echo>,
     floor: Vec<u32>,
     beams: Vec<BeamColumns>,
     ranges: Vec<[f64; LANES]>,
@@ -24,8 +25,10 @@ impl World {
         scratch.floor.clear();
         scratch.spheres.clear();
         scratch.discs.clear();
+        scratch.hulls.clear();
         self.spheres.near(origin, longest, &mut scratch.spheres);
         self.discs.near(origin, longest, &mut scratch.discs);
+        self.hulls.near(origin, longest, &mut scratch.hulls);
         self.fixed.floor.near(origin, longest, &mut scratch.floor);
         scratch.beams.clear();
         scratch.ranges.clear();
@@ -46,15 +49,25 @@ impl World {
         self.solids.range(origin, directions, longest, ranges);
     }
 
-    /// The obstacles, in no order, whose extent the last [`World::sonar`] with this `scratch` could have met.
-    pub fn within_sonar(&self, scratch: &Scratch) -> impl Iterator<Item = usize> {
+    /// The obstacles, in no order, whose extent the last [`World::sonar`] from `origin` with this `scratch` could have
+    /// met, and where they lie from there (m): on the map alone if they reach through all depths.
+    pub fn within_sonar(&self, scratch: &Scratch, origin: Vec3) -> impl Iterator<Item = (usize, Vec3)> {
         let numbers = &self.fixed.numbers;
+        let named = |kind: usize, echo: &Echo| (numbers[kind][echo.index as usize] as usize, echo.offset());
         // On the map of a 2-D world a sphere may be nearer than in space.
         let flat = self.fixed.scenario.dimensions == 2;
         let (all, some) = if flat { (&numbers[0][..], &[][..]) } else { (&[][..], &scratch.spheres[..]) };
-        let spheres = some.iter().map(|echo| numbers[0][echo.index as usize]);
-        let discs = scratch.discs.iter().map(|echo| numbers[1][echo.index as usize]);
-        spheres.chain(discs).chain(all.iter().chain(&numbers[2]).copied()).map(|number| number as usize)
+        let all = all.iter().map(move |i| (*i as usize, sub(self.obstacle_position(*i as usize), origin)));
+        let spheres = some.iter().map(move |echo| named(0, echo));
+        let discs = scratch.discs.iter().map(move |echo| named(1, echo));
+        let others = scratch.hulls.iter().map(move |echo| {
+            let (i, mut offset) = named(2, echo);
+            if !self.is_flat(i) {
+                offset[2] = self.obstacle_position(i)[2] - origin[2];
+            }
+            (i, offset)
+        });
+        all.chain(spheres).chain(discs).chain(others)
     }
 
     /// The lesser of `nearest` and how far beams run before they meet a wall of the box or the surface (m).
