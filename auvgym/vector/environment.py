@@ -25,9 +25,6 @@ Observations: TypeAlias = npt.NDArray[np.float32]
 Flags: TypeAlias = npt.NDArray[np.bool_]
 Steps: TypeAlias = tuple[Observations, npt.NDArray[np.float64], Flags, Flags, dict[str, Any]]
 
-#: By the engine's number; the last is that of an environment which does not count.
-OUTCOMES = np.array([*_core.outcomes(), None], dtype=object)
-
 
 class AUVVectorEnv(gymnasium.vector.VectorEnv[Observations, npt.ArrayLike, npt.NDArray[Any]]):
     """Many environments of one class, stepped together on all cores.
@@ -173,8 +170,7 @@ class AUVVectorEnv(gymnasium.vector.VectorEnv[Observations, npt.ArrayLike, npt.N
             for index, row in zip(over.tolist(), self.last_observations(over), strict=True):
                 last[index] = row
             infos["final_obs"], infos["_final_obs"] = last, ended.copy()
-            final = self.columns(last=True, only=ended)
-            infos["final_info"] = self._with_masks(final, ended.copy())
+            infos["final_info"] = self._batch.info(True, ended, True)
             infos["_final_info"] = ended.copy()
         return observations, rewards, ended, self._none(), infos
 
@@ -234,33 +230,25 @@ class AUVVectorEnv(gymnasium.vector.VectorEnv[Observations, npt.ArrayLike, npt.N
             raise ActionError(f"actions have shape {array.shape}: must be {shape}")
         if discrete:
             array = array[:, None]
+        if array.dtype == np.float32:
+            return np.ascontiguousarray(array)
         # A number too large for float32 becomes infinite, which the engine refuses by name.
         with np.errstate(over="ignore"):
             return np.ascontiguousarray(array, dtype=np.float32)
 
-    def columns(self, last: bool = False, only: Flags | None = None) -> dict[str, Any]:
-        """What is measured, by name an array (n,): now, or when the ``last`` episodes ended.
-
-        Where ``only`` is false there is zero, False or None instead, as Gymnasium fills them.
-        """
-        info = self._batch.info(last, only)
-        info["outcome"] = OUTCOMES[info["outcome"]]
-        return info
+    def columns(self, last: bool = False) -> dict[str, Any]:
+        """What is measured, by name an array (n,): now, or when the ``last`` episodes ended."""
+        return self._batch.info(last)
 
     def rows(self, indices: npt.NDArray[np.intp], last: bool = False) -> list[dict[str, Any]]:
         """The infos of some environments, as alone: now, or when the ``last`` episodes ended."""
         return self._batch.infos(indices.astype(np.int64, copy=False), last)
 
-    @staticmethod
-    def _with_masks(columns: dict[str, Any], mask: Flags) -> dict[str, Any]:
-        columns.update({f"_{name}": mask for name in list(columns)})
-        return columns
-
     def _infos(
         self, begun: Flags, seeds: npt.NDArray[np.uint64], everywhere: Flags | None = None
     ) -> dict[str, Any]:
-        mask = np.ones(self.num_envs, np.bool_) if everywhere is None else everywhere.copy()
-        columns = self._with_masks(self.columns(only=everywhere), mask)
+        # Zero, False or None where there is nothing to tell, and masks, as Gymnasium has them.
+        columns = self._batch.info(False, everywhere, True)
         if begun.any():
             columns["episode_seed"] = np.where(begun, seeds, np.uint64(0))
             columns["_episode_seed"] = begun

@@ -19,25 +19,27 @@ class EpisodeSeeds:
         self._generators: list[np.random.Generator | None] = [None] * count
         #: (n,) uint64: always drawn already, so that the engine can begin an episode by itself.
         self.next: npt.NDArray[np.uint64] = np.zeros(count, np.uint64)
-        #: What each generator has drawn ahead, and how many of those are used.
-        self._ahead: npt.NDArray[np.uint64] = np.zeros((count, _AT_ONCE), np.uint64)
-        self._taken: npt.NDArray[np.intp] = np.full(count, _AT_ONCE, np.intp)
+        #: What each generator has drawn ahead, the next one last.
+        self._ahead: list[list[int]] = [[] for _ in range(count)]
 
     def seed(self, seeds: Sequence[int | None], which: npt.NDArray[np.intp]) -> None:
         """Seed the generators of ``which``; those whose seed is None go on as they were."""
-        anew = [i for i in which.tolist() if seeds[i] is not None or self._generators[i] is None]
-        for index in anew:
-            self._generators[index] = seeding.np_random(seeds[index])[0]
-        self._taken[anew] = _AT_ONCE
-        self.used(np.array(anew, np.intp))
+        for index in which.tolist():
+            if seeds[index] is not None or self._generators[index] is None:
+                self._generators[index] = seeding.np_random(seeds[index])[0]
+                self._ahead[index].clear()
+                self._draw(index)
 
     def used(self, which: npt.NDArray[np.intp]) -> None:
         """Draw anew for those whose seed has been used."""
-        for index in which[self._taken[which] == _AT_ONCE].tolist():
+        for index in which.tolist():
+            self._draw(index)
+
+    def _draw(self, index: int) -> None:
+        ahead = self._ahead[index]
+        if not ahead:
             generator = self._generators[index]
             assert generator is not None, "seeded before the first episode"
             # As ``AUVEnv.reset`` draws, one after another.
-            self._ahead[index] = generator.integers(0, 2**63, _AT_ONCE)
-            self._taken[index] = 0
-        self.next[which] = self._ahead[which, self._taken[which]]
-        self._taken[which] += 1
+            ahead.extend(generator.integers(0, 2**63, _AT_ONCE)[::-1].tolist())
+        self.next[index] = ahead.pop()

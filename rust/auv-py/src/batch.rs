@@ -105,13 +105,14 @@ impl Batch {
     }
 
     /// What is measured, a column each: now, or when the `last` episode ended. Where `only` is false zeros stand
-    /// instead, and in `outcome` the number behind the last of [`outcomes`].
-    #[pyo3(signature = (last, only=None))]
+    /// instead, and None for an outcome; with `masks` a column `_name` beside each says where.
+    #[pyo3(signature = (last, only=None, masks=false))]
     fn info<'py>(
         &self,
         py: Python<'py>,
         last: bool,
         only: Option<PyReadonlyArray1<'py, bool>>,
+        masks: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
         let only = only.as_ref().map(|only| only.as_slice()).transpose()?;
         let lanes = self.0.lanes();
@@ -120,7 +121,7 @@ impl Batch {
         let of = |(index, lane): (usize, &Lane)| counts(index).then_some(if last { lane.last } else { lane.now });
         // Side by side first: environments lie far apart.
         let rows: Vec<Option<Measures>> = lanes.iter().enumerate().map(of).collect();
-        info::columns(py, &rows, self.0.mode())
+        info::columns(py, &rows, self.0.mode(), masks)
     }
 
     /// What is measured of some environments, a dict each: now, or when the `last` episode ended.

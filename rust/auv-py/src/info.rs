@@ -6,16 +6,7 @@ use auv_env::observation::Mode;
 use numpy::{Element, PyArray1};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
-
-/// Names of outcomes; `outcome` in a column is an index into them.
-#[pyfunction]
-pub fn outcomes() -> Vec<&'static str> {
-    OUTCOMES.map(Outcome::name).to_vec()
-}
-
-const OUTCOMES: [Outcome; 6] =
-    [Outcome::Running, Outcome::Goal, Outcome::Collision, Outcome::OutOfBounds, Outcome::Energy, Outcome::Timeout];
+use pyo3::types::{PyDict, PyString};
 
 /// Every entry but `outcome`, the last ones only where plans are flown.
 macro_rules! entries {
@@ -54,9 +45,14 @@ pub fn one<'py>(py: Python<'py>, now: &Measures, mode: Mode) -> PyResult<Bound<'
     Ok(info)
 }
 
-/// Many episodes', a column each. Where there is no row zeros stand, and in `outcome` the number behind the last of
-/// [`outcomes`].
-pub fn columns<'py>(py: Python<'py>, rows: &[Option<Measures>], mode: Mode) -> PyResult<Bound<'py, PyDict>> {
+/// Many episodes', a column each; where there is no row zeros stand, and None for an outcome. With `masks` a column
+/// `_name` beside each says where there is one.
+pub fn columns<'py>(
+    py: Python<'py>,
+    rows: &[Option<Measures>],
+    mode: Mode,
+    masks: bool,
+) -> PyResult<Bound<'py, PyDict>> {
     fn column<'py, T: Element + Default>(
         py: Python<'py>,
         rows: &[Option<Measures>],
@@ -65,16 +61,27 @@ pub fn columns<'py>(py: Python<'py>, rows: &[Option<Measures>], mode: Mode) -> P
         PyArray1::from_iter(py, rows.iter().map(|row| row.as_ref().map(&value).unwrap_or_default()))
     }
     let info = PyDict::new(py);
+    let mask = masks.then(|| PyArray1::from_iter(py, rows.iter().map(Option::is_some)));
+    macro_rules! mask {
+        ($name:expr) => {
+            if let Some(mask) = &mask {
+                info.set_item(intern!(py, concat!("_", stringify!($name))), mask)?;
+            }
+        };
+    }
     macro_rules! put {
         ($name:ident, $value:expr) => {
             info.set_item(intern!(py, stringify!($name)), column(py, rows, $value))?;
+            mask!($name);
         };
     }
     entries!(mode, put);
-    let number = |row: &Option<Measures>| {
-        let known = row.and_then(|row| OUTCOMES.iter().position(|outcome| *outcome == row.outcome));
-        known.unwrap_or(OUTCOMES.len()) as i64
+    let names = Outcome::ALL.map(|outcome| PyString::intern(py, outcome.name()).into_any().unbind());
+    let named = |row: &Option<Measures>| match row {
+        Some(row) => names[row.outcome as usize].clone_ref(py),
+        None => py.None(),
     };
-    info.set_item(intern!(py, "outcome"), PyArray1::from_iter(py, rows.iter().map(number)))?;
+    info.set_item(intern!(py, "outcome"), PyArray1::from_iter(py, rows.iter().map(named)))?;
+    mask!(outcome);
     Ok(info)
 }

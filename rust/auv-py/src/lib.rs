@@ -34,8 +34,6 @@ mod _core {
     #[pymodule_export]
     use crate::field::TimeField;
     #[pymodule_export]
-    use crate::info::outcomes;
-    #[pymodule_export]
     use crate::maklink::maklink;
     #[pymodule_export]
     use crate::navigator::Navigator;
