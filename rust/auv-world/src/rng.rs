@@ -80,7 +80,7 @@ impl Stream {
         mean + deviation * radius * libm::cos(std::f64::consts::TAU * self.unit())
     }
 
-    /// To each of `values`, one after another, what [`Stream::normal`] with mean 0 would give.
+    /// Adds to each of `values`, one after another, what [`Stream::normal`] with mean 0 would give.
     pub fn disturb(&mut self, values: &mut [f64], deviation: f64) {
         for four in values.chunks_mut(LANES) {
             let (mut a, mut b) = ([0.0; LANES], [0.0; LANES]);
