@@ -134,7 +134,7 @@ impl<'a, 'e> Fleet<'a, 'e> {
         for set in [&mut self.flying, &mut self.moving, &mut self.other_currents, &mut self.recording] {
             *set &= !bit;
         }
-        let Some(leg) = leg else { return };
+        let Some(leg) = leg else { return self.idle(lane) };
         let (episode, state) = (&*leg.episode, &leg.episode.state);
         let (world, scenario) = (&episode.world, episode.world.scenario());
         let (flight, tick_s, speed) = (&scenario.episode, scenario.episode.tick_s, scenario.vehicle.speed_mps);
@@ -176,6 +176,14 @@ impl<'a, 'e> Fleet<'a, 'e> {
             row[lane] = value;
         }
         self.legs[lane] = Some(leg);
+    }
+
+    /// Leaves a lane at rest in still water: numbers that are none would cost exponentials.
+    fn idle(&mut self, lane: usize) {
+        self.vortices.clear(lane);
+        put(&mut self.position, lane, [0.0; 3]);
+        put(&mut self.waypoint, lane, [1.0, 0.0, 0.0]);
+        self.stride[lane] = 0.0;
     }
 
     /// One tick of all; gives the lanes whose leg ends with it.

@@ -108,6 +108,9 @@ fn falloff(r2: f64x2, inverse_core2: f64x2) -> f64x2 {
     central.select(inverse_core2, factor)
 }
 
+/// Where there is no vortex: so far away that it costs no exponential.
+const FAR: f64 = 1e15;
+
 /// The vortices of four worlds, a lane each.
 #[derive(Debug, Clone, Default)]
 pub struct VortexLanes {
@@ -124,19 +127,24 @@ struct VortexRow {
 }
 
 impl VortexLanes {
+    /// Leaves a lane without vortices.
+    pub fn clear(&mut self, lane: usize) {
+        self.put(lane, &VortexField::default());
+    }
+
     /// Puts the vortices of a world into a lane.
     pub fn put(&mut self, lane: usize, field: &VortexField) {
         if self.rows.len() < field.len() {
-            let still =
-                VortexRow { x: [0.0; LANES], y: [0.0; LANES], strength: [0.0; LANES], inverse_core2: [1.0; LANES] };
-            self.rows.resize(field.len(), still);
+            let none =
+                VortexRow { x: [FAR; LANES], y: [FAR; LANES], strength: [0.0; LANES], inverse_core2: [1.0; LANES] };
+            self.rows.resize(field.len(), none);
         }
         for (i, row) in self.rows.iter_mut().enumerate() {
             if i < field.len() {
                 (row.x[lane], row.y[lane]) = (field.x[i], field.y[i]);
                 (row.strength[lane], row.inverse_core2[lane]) = (field.strength[i], field.inverse_core2[i]);
             } else {
-                row.strength[lane] = 0.0;
+                (row.x[lane], row.y[lane], row.strength[lane]) = (FAR, FAR, 0.0);
             }
         }
     }
