@@ -5,16 +5,16 @@
 
 use std::sync::Arc;
 
-use crate::currents::{GriddedField, VortexField, jet_velocity, scale_to_peak};
+use crate::currents::{GriddedField, VortexField, jet_velocity};
 use crate::error::WorldError;
-use crate::math::{Vec2, Vec3, distance, norm};
+use crate::math::{Vec2, Vec3, norm};
 use crate::motion::Body;
 use crate::obstacles::{Discs, Solid, Solids, Spheres, polygon::Prism};
-use crate::rng::{Purpose, Stream};
-use crate::scenario::{Change, Current, Hold, Jet, Manoeuvre, Mission, Obstacle, Redraw, Scenario, Seabed};
+use crate::scenario::{Current, Jet, Manoeuvre, Mission, Obstacle, Scenario, Seabed};
 use crate::seabed::Floor;
 use serde::{Deserialize, Serialize};
 
+mod change;
 mod clearance;
 mod sonar;
 
@@ -417,91 +417,5 @@ impl World {
     /// Depth of the sea floor (m) at (x, y); infinite where there is none.
     pub fn floor_depth(&self, x: f64, y: f64) -> f64 {
         self.fixed.floor.depth(x, y)
-    }
-
-    /// Whether another map change will change anything.
-    pub fn can_change(&self) -> bool {
-        match &self.fixed.scenario.change {
-            None => false,
-            Some(Change::Table(table)) => self.changes.len() < table.phases.len(),
-            Some(Change::Redraw(_)) => true,
-        }
-    }
-
-    /// Changes the map, as when a vehicle at `vehicle_m` has travelled the change distance. Says whether
-    /// anything was left to change.
-    pub fn apply_change(&mut self, vehicle_m: Vec3) -> bool {
-        if !self.can_change() {
-            return false;
-        }
-        let fixed = Arc::clone(&self.fixed);
-        match &fixed.scenario.change {
-            Some(Change::Table(table)) => {
-                let phase = &table.phases[self.changes.len()];
-                self.move_obstacles(vehicle_m, |_, i, _| phase.obstacles_m[i]);
-                for (eddy, centre) in self.eddies.iter_mut().zip(&phase.vortices_m) {
-                    eddy.base = [centre[0], centre[1], 0.0];
-                }
-            }
-            Some(Change::Redraw(redraw)) => self.redraw(redraw, vehicle_m),
-            None => {}
-        }
-        self.changes.push(ChangeEvent { time_s: self.time_s, vehicle_m });
-        self.refresh();
-        true
-    }
-
-    /// Gives each obstacle a new base, unless that would come too near.
-    fn move_obstacles(&mut self, vehicle_m: Vec3, mut target: impl FnMut(&Self, usize, Vec3) -> Vec3) {
-        let fixed = Arc::clone(&self.fixed);
-        let (margin, hold) = fixed.scenario.change.as_ref().map_or((0.0, Hold::All), Change::hold);
-        let mission = &fixed.scenario.missions[self.mission];
-        let protected = [vehicle_m, mission.start_m, mission.goal_m];
-        let protected = match hold {
-            Hold::All => &protected[..],
-            Hold::Vehicle => &protected[..1],
-        };
-        for i in 0..self.bodies.len() {
-            let (old, flat, room) = (self.obstacle_position(i), self.is_flat(i), fixed.extents[i] + margin);
-            let new = target(self, i, old);
-            let near = |point: &Vec3| {
-                let point = if flat { [point[0], point[1], new[2]] } else { *point };
-                distance(new, point) < room
-            };
-            self.bodies[i].base = if protected.iter().any(near) { old } else { new };
-        }
-    }
-
-    fn redraw(&mut self, redraw: &Redraw, vehicle_m: Vec3) {
-        let fixed = Arc::clone(&self.fixed);
-        let domain = &fixed.scenario.domain;
-        let mut stream = Stream::new(self.seed, Purpose::Change, self.changes.len() as u32 + 1);
-        let axes = usize::from(fixed.scenario.dimensions);
-        let free = |world: &Self, i: usize| if world.is_flat(i) { 2 } else { axes };
-        let obstacles = 0..self.bodies.len();
-        let mut moved: Vec<f64> =
-            obstacles.flat_map(|i| self.obstacle_position(i).into_iter().take(free(self, i))).collect();
-        stream.disturb(&mut moved, redraw.obstacle_step_m);
-        let mut moved = moved.into_iter();
-        self.move_obstacles(vehicle_m, |world, i, old| {
-            let mut new = old;
-            for (axis, value) in moved.by_ref().take(free(world, i)).enumerate() {
-                new[axis] = value.clamp(domain.min_m[axis], domain.max_m[axis]);
-            }
-            new
-        });
-        if let Some(draw) = &redraw.vortices {
-            let place = |eddy: &mut Body, centre: Vec2| eddy.base = [centre[0], centre[1], 0.0];
-            let (low, high) = (domain.min_m, domain.max_m);
-            for (i, eddy) in self.eddies.iter_mut().enumerate() {
-                let (centre, sign) = draw.sample(&mut stream, [low[0], low[1]], [high[0], high[1]]);
-                place(eddy, centre);
-                self.vortices.place(i, centre);
-                self.vortices.spin(i, sign * self.vortices.circulation(i).abs());
-            }
-            if let Some(peak) = draw.peak_speed_mps {
-                scale_to_peak(&mut self.vortices, peak);
-            }
-        }
     }
 }

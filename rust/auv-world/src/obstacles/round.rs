@@ -242,7 +242,9 @@ impl Spheres {
             }
             see(&mut lanes, i);
         }
-        lanes.found().named(|i| self.order[i] as usize)
+        let found = lanes.found();
+        // From farther away than the padding that would be the nearest, and is no ball.
+        Nearest { index: found.index.and_then(|i| self.order.get(i)).map(|i| *i as usize), ..found }
     }
 
     /// The slab where y should be. Where to begin decides only how soon the rest can be passed over: a guess.
@@ -373,6 +375,15 @@ mod tests {
     use super::*;
     use crate::math::add_scaled;
     use proptest::prelude::*;
+
+    #[test]
+    fn from_beyond_the_padding_none_is_the_nearest() {
+        let mut spheres = Spheres::default();
+        spheres.push([0.0; 3], 5.0);
+        spheres.arrange();
+        assert_eq!(spheres.nearest([20.0, 0.0, 0.0]).index, Some(0));
+        assert_eq!(spheres.nearest([FAR; 3]).index, None);
+    }
 
     proptest! {
         #[test]
