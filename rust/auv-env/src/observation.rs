@@ -204,9 +204,10 @@ pub(crate) fn observe(episode: &Episode, ranges: &[f64], out: &mut Writer<'_>) {
         out.put((position[2] - goal[2]) / sonar_range, -1.0, 1.0);
         out.put(heading[2], -1.0, 1.0);
     }
-    for ahead in [[0.0, 0.0], [1.0, 0.0], [0.6, 0.8], [0.6, -0.8]] {
-        let point = add_scaled(position, flight.reach_m, frame.to_world([ahead[0], ahead[1], 0.0]));
-        let [forward, left] = frame.flat(world.current(point));
+    let looks = [[0.0, 0.0], [1.0, 0.0], [0.6, 0.8], [0.6, -0.8]]
+        .map(|ahead| add_scaled(position, flight.reach_m, frame.to_world([ahead[0], ahead[1], 0.0])));
+    for current in world.currents(looks) {
+        let [forward, left] = frame.flat(current);
         out.put(forward / speed, -2.0, 2.0);
         out.put(left / speed, -2.0, 2.0);
     }

@@ -41,6 +41,13 @@ impl Stream {
         self.0.next_u64()
     }
 
+    /// Passes over so many numbers.
+    pub fn skip(&mut self, count: usize) {
+        for _ in 0..count {
+            self.next_u64();
+        }
+    }
+
     /// Uniform in [0, 1) with 53 bits.
     #[inline]
     pub fn unit(&mut self) -> f64 {

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use crate::currents::{GriddedField, VortexField, jet_velocity};
 use crate::error::WorldError;
+use crate::lanes::LANES;
 use crate::math::{Vec2, Vec3, norm};
 use crate::motion::Body;
 use crate::obstacles::{Discs, Solid, Solids, Spheres, polygon::Prism};
@@ -397,6 +398,12 @@ impl World {
     #[inline]
     pub fn current(&self, point: Vec3) -> Vec2 {
         self.flowing(self.vortices.velocity(point[0], point[1]), point)
+    }
+
+    /// The same at four points.
+    pub fn currents(&self, points: [Vec3; LANES]) -> [Vec2; LANES] {
+        let [u, v] = self.vortices.velocities(points.map(|point| point[0]), points.map(|point| point[1]));
+        std::array::from_fn(|i| self.flowing([u[i], v[i]], points[i]))
     }
 
     /// The same where the velocity of the vortices (m/s) is known.

@@ -22,21 +22,17 @@ impl VortexDraw {
 pub fn scale_to_peak(vortices: &mut VortexField, peak: f64) {
     let mut fastest2 = 0.0_f64;
     let diagonal = std::f64::consts::FRAC_1_SQRT_2;
+    // Where they are on a ring of radius 1, four at a time.
+    let points = [
+        ([1.0, diagonal, 0.0, -diagonal], [0.0, diagonal, 1.0, diagonal]),
+        ([-1.0, -diagonal, 0.0, diagonal], [0.0, -diagonal, -1.0, -diagonal]),
+    ];
     for i in 0..vortices.len() {
         let [x, y] = vortices.centre(i);
         let ring = RING_RADIUS * vortices.core_radius(i);
-        for (dx, dy) in [
-            (1.0, 0.0),
-            (diagonal, diagonal),
-            (0.0, 1.0),
-            (-diagonal, diagonal),
-            (-1.0, 0.0),
-            (-diagonal, -diagonal),
-            (0.0, -1.0),
-            (diagonal, -diagonal),
-        ] {
-            let [u, v] = vortices.velocity(x + ring * dx, y + ring * dy);
-            fastest2 = fastest2.max(u * u + v * v);
+        for (dx, dy) in points {
+            let [u, v] = vortices.velocities(dx.map(|dx| x + ring * dx), dy.map(|dy| y + ring * dy));
+            fastest2 = u.iter().zip(v).fold(fastest2, |fastest2, (u, v)| fastest2.max(u * u + v * v));
         }
     }
     if fastest2 > 0.0 {

@@ -90,6 +90,20 @@ impl VortexField {
         };
         [total(u), total(v)]
     }
+
+    /// Velocity (m/s) at each of four points: bit for bit [`VortexField::velocity`].
+    pub fn velocities(&self, x: [f64; LANES], y: [f64; LANES]) -> [[f64; LANES]; 2] {
+        let (x, y) = (halves(x), halves(y));
+        let mut sums = Sums::default();
+        for i in 0..self.len() {
+            let [cx, cy] = self.centre(i).map(f64x2::splat);
+            let (strength, inverse_core2) = (f64x2::splat(self.strength[i]), f64x2::splat(self.inverse_core2[i]));
+            for half in 0..2 {
+                sums.add(i % LANES, half, [x[half] - cx, y[half] - cy], strength, inverse_core2);
+            }
+        }
+        sums.total().map(f64x4::to_array)
+    }
 }
 
 /// From here on 1 - exp(-s) is 1 to the last bit.
@@ -153,21 +167,37 @@ impl VortexLanes {
     #[inline(always)]
     pub fn velocity(&self, x: [f64; LANES], y: [f64; LANES]) -> [f64x4; 2] {
         let (x, y) = (halves(x), halves(y));
-        // Every fourth vortex has a sum of its own there, too.
-        let (mut u, mut v) = ([[f64x2::ZERO; 2]; LANES], [[f64x2::ZERO; 2]; LANES]);
-        for rows in self.rows.chunks(LANES) {
-            for (i, row) in rows.iter().enumerate() {
-                let (cx, cy) = (halves(row.x), halves(row.y));
-                let (strength, inverse_core2) = (halves(row.strength), halves(row.inverse_core2));
-                for half in 0..2 {
-                    let (dx, dy) = (x[half] - cx[half], y[half] - cy[half]);
-                    let factor = strength[half] * falloff(dx * dx + dy * dy, inverse_core2[half]);
-                    u[i][half] -= factor * dy;
-                    v[i][half] += factor * dx;
-                }
+        let mut sums = Sums::default();
+        for (i, row) in self.rows.iter().enumerate() {
+            let (cx, cy) = (halves(row.x), halves(row.y));
+            let (strength, inverse_core2) = (halves(row.strength), halves(row.inverse_core2));
+            for half in 0..2 {
+                let offset = [x[half] - cx[half], y[half] - cy[half]];
+                sums.add(i % LANES, half, offset, strength[half], inverse_core2[half]);
             }
         }
-        [u, v].map(|[a, b, c, d]| {
+        sums.total()
+    }
+}
+
+/// Velocities at four points: every fourth vortex has a sum of its own, as in [`VortexField::velocity`].
+#[derive(Default)]
+struct Sums {
+    u: [[f64x2; 2]; LANES],
+    v: [[f64x2; 2]; LANES],
+}
+
+impl Sums {
+    #[inline(always)]
+    fn add(&mut self, sum: usize, half: usize, [dx, dy]: [f64x2; 2], strength: f64x2, inverse_core2: f64x2) {
+        let factor = strength * falloff(dx * dx + dy * dy, inverse_core2);
+        self.u[sum][half] -= factor * dy;
+        self.v[sum][half] += factor * dx;
+    }
+
+    #[inline(always)]
+    fn total(self) -> [f64x4; 2] {
+        [self.u, self.v].map(|[a, b, c, d]| {
             let [[p, q], [r, s]] = [0, 1].map(|half| ((a[half] + b[half]) + (c[half] + d[half])).to_array());
             f64x4::new([p, q, r, s])
         })
@@ -248,10 +278,13 @@ mod tests {
             lanes.put(again, &fields[again]);
             let [x, y] = [0, 1].map(|axis| points.map(|point| point[axis]));
             let together = lanes.velocity(x, y).map(f64x4::to_array);
+            let at_each = fields[again].velocities(x, y);
             for lane in 0..LANES {
                 let alone = fields[lane].velocity(points[lane][0], points[lane][1]);
                 // A sum of nothing may be either zero.
                 prop_assert_eq!([0, 1].map(|axis| (0.0 + together[axis][lane]).to_bits()), alone.map(|v| (0.0 + v).to_bits()));
+                let alone = fields[again].velocity(points[lane][0], points[lane][1]);
+                prop_assert_eq!(at_each.map(|row| row[lane].to_bits()), alone.map(f64::to_bits));
             }
         }
     }

@@ -46,13 +46,14 @@ fn square_gap(offset: [f64x4; 2], along: [f64x4; 2], square: f64x4) -> f64x4 {
 }
 
 impl Outline {
-    /// The outline with these corners (m), at least three.
-    pub fn new(corners: &[Vec2]) -> Self {
+    /// The outline with these corners (m), at least three, seen from `centre`.
+    pub fn new(corners: &[Vec2], centre: Vec2) -> Self {
+        let seen = |i: usize| [corners[i][0] - centre[0], corners[i][1] - centre[1]];
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         let four = |first: usize| {
             let (mut from, mut along, mut square) = ([[FAR; LANES]; 2], [[0.0; LANES]; 2], [1.0; LANES]);
-            for (lane, corner) in corners[first..].iter().take(LANES).enumerate() {
-                let next = corners[if first + lane + 1 < corners.len() { first + lane + 1 } else { 0 }];
+            for (lane, i) in (first..corners.len()).take(LANES).enumerate() {
+                let (corner, next) = (seen(i), seen(if i + 1 < corners.len() { i + 1 } else { 0 }));
                 let edge = [next[0] - corner[0], next[1] - corner[1]];
                 for axis in 0..2 {
                     (from[axis][lane], along[axis][lane]) = (corner[axis], edge[axis]);
@@ -69,13 +70,14 @@ impl Outline {
         Self { edges, count: corners.len(), low, high, extent: 0.5 * (width * width + height * height).sqrt() }
     }
 
+    #[inline(always)]
+    fn corner(&self, i: usize) -> Vec2 {
+        self.edges[i / LANES].from.each_ref().map(|axis| axis.as_array()[i % LANES])
+    }
+
     /// Its corners (m).
     pub fn corners(&self) -> impl Iterator<Item = Vec2> + '_ {
-        let each = |edges: &Edges| {
-            let from = edges.from.map(f64x4::to_array);
-            std::array::from_fn::<Vec2, LANES, _>(|lane| [from[0][lane], from[1][lane]])
-        };
-        self.edges.iter().flat_map(each).take(self.count)
+        (0..self.count).map(|i| self.corner(i))
     }
 
     /// The corners of a box that holds it with a little room (m).
@@ -94,15 +96,23 @@ impl Outline {
         if self.holds(p) { -distance } else { distance }
     }
 
+    /// Whether a point lies in its box.
+    #[inline]
+    pub fn may_hold(&self, p: Vec2) -> bool {
+        (0..2).all(|axis| self.low[axis] <= p[axis] && p[axis] <= self.high[axis])
+    }
+
     /// Whether a point lies inside, by the crossing rule: a ray to +x crosses an odd number of edges.
     fn holds(&self, p: Vec2) -> bool {
-        if (0..2).any(|axis| p[axis] < self.low[axis] || p[axis] > self.high[axis]) {
+        if !self.may_hold(p) {
             return false;
         }
-        let corners = || self.corners().chain(self.corners().take(1));
-        corners().zip(corners().skip(1)).fold(false, |inside, (from, to)| {
+        let mut from = self.corner(self.count - 1);
+        (0..self.count).fold(false, |inside, i| {
+            let to = self.corner(i);
             let crosses = (from[1] > p[1]) != (to[1] > p[1])
                 && p[0] < from[0] + (to[0] - from[0]) * (p[1] - from[1]) / (to[1] - from[1]);
+            from = to;
             inside ^ crosses
         })
     }
@@ -207,7 +217,7 @@ mod tests {
                 [r * libm::cos(angle), r * libm::sin(angle)]
             };
             let corners: Vec<Vec2> = reaches.iter().enumerate().map(at).collect();
-            let outline = Outline::new(&corners);
+            let outline = Outline::new(&corners, [0.0; 2]);
             // On a corner and level with one, too: there the crossing rule is put to the test.
             let points = [points[0], points[1], corners[corner], [points[3][0], corners[corner][1]]];
             let together = outline.distances([0, 1].map(|axis| f64x4::new(points.map(|p| p[axis])))).to_array();

@@ -27,8 +27,7 @@ impl Prism {
     /// The prism where the scenario has it.
     pub fn new(shape: &Polygon) -> Self {
         let centre = centre(&shape.vertices_m);
-        let corners: Vec<Vec2> = shape.vertices_m.iter().map(|v| [v[0] - centre[0], v[1] - centre[1]]).collect();
-        Self { outline: Outline::new(&corners), centre, top: shape.top_m, bottom: shape.bottom_m }
+        Self { outline: Outline::new(&shape.vertices_m, centre), centre, top: shape.top_m, bottom: shape.bottom_m }
     }
 
     /// Moves its centre.
@@ -56,6 +55,12 @@ impl Prism {
     /// Whether it reaches from above to below `depth`, so that only the outline counts there.
     pub(super) fn reaches_through(&self, depth: f64) -> bool {
         self.top <= depth && depth <= self.bottom
+    }
+
+    /// Whether a point lies in the box that holds it.
+    #[inline]
+    pub(super) fn may_hold(&self, point: Vec3) -> bool {
+        self.outline.may_hold(self.relative(point))
     }
 
     /// [`Outline::may_stop`] where it is now.

@@ -89,6 +89,25 @@ fn nearer(distance2: f64x4, radius: f64x4, nearest: f64) -> f64 {
     if distance2.simd_lt(reach * reach).any() { least(distance2.sqrt() - radius, nearest) } else { nearest }
 }
 
+/// Puts numbers of `values` in order of these, equal ones as they were. Balls that moved a little are nearly in order
+/// already: then each is passed by few others.
+fn order_by(values: &[f64], order: &mut [u32]) {
+    let follows = |a: u32, b: u32| values[a as usize].total_cmp(&values[b as usize]).is_gt();
+    let mut passes_left = 8 * order.len();
+    for i in 1..order.len() {
+        let (moved, mut j) = (order[i], i);
+        while j > 0 && follows(order[j - 1], moved) {
+            order[j] = order[j - 1];
+            j -= 1;
+        }
+        order[j] = moved;
+        let Some(left) = passes_left.checked_sub(i - j) else {
+            return order.sort_by(|a, b| values[*a as usize].total_cmp(&values[*b as usize]));
+        };
+        passes_left = left;
+    }
+}
+
 /// Four unit directions of sonar beams.
 pub type Beams = [f64x4; 3];
 /// The same where they are kept.
@@ -135,12 +154,10 @@ impl Spheres {
 
     /// Puts the balls in order after some were placed.
     pub fn arrange(&mut self) {
-        let y = &self.y;
-        // Nearly in order already: a stable sort takes one pass.
-        self.order.sort_by(|a, b| y[*a as usize].total_cmp(&y[*b as usize]));
+        order_by(&self.y, &mut self.order);
         if let (Some(&first), Some(&last)) = (self.order.first(), self.order.last()) {
-            self.first = y[first as usize];
-            self.slabs_per_metre = (self.order.len() / LANES) as f64 / (y[last as usize] - self.first).max(1e-9);
+            self.first = self.y[first as usize];
+            self.slabs_per_metre = (self.order.len() / LANES) as f64 / (self.y[last as usize] - self.first).max(1e-9);
         }
         self.slabs.clear();
         for four in self.order.chunks(LANES) {
@@ -386,6 +403,18 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn orders_as_a_stable_sort(values in prop::collection::vec(0..40_u8, 0..90), steps in 0.0..2.0_f64) {
+            // From nearly in order to not at all.
+            let values: Vec<f64> =
+                values.iter().enumerate().map(|(i, v)| (f64::from(*v) + steps * i as f64).round()).collect();
+            let mut order: Vec<u32> = (0..values.len() as u32).collect();
+            let mut expected = order.clone();
+            expected.sort_by(|a, b| values[*a as usize].total_cmp(&values[*b as usize]));
+            order_by(&values, &mut order);
+            prop_assert_eq!(order, expected);
+        }
+
         #[test]
         fn beam_ends_on_a_surface(p in prop::array::uniform3(-9e3..9e3_f64), d in prop::array::uniform3(-1.0..1.0_f64)) {
             let mut spheres = Spheres::default();

@@ -141,7 +141,7 @@ impl Solids {
 
 /// [`Solid::range`] of a polygon that beams can only meet from the side: those that may are taken four at once.
 fn level_range(prism: &Prism, origin: Vec3, directions: &[Vec3], ranges: &mut [f64]) {
-    if prism.clearance(origin) <= 0.0 {
+    if prism.may_hold(origin) && prism.clearance(origin) <= 0.0 {
         ranges.fill(0.0);
         return;
     }

@@ -69,7 +69,8 @@ impl World {
         let axes = usize::from(fixed.scenario.dimensions);
         let mut places: Vec<Vec3> = (0..self.bodies.len()).map(|i| self.obstacle_position(i)).collect();
         let free = |i: usize| if self.is_flat(i) { 2 } else { axes };
-        let mut moved: Vec<f64> = places.iter().enumerate().flat_map(|(i, place)| &place[..free(i)]).copied().collect();
+        let mut moved = Vec::with_capacity(axes * places.len());
+        places.iter().enumerate().for_each(|(i, place)| moved.extend_from_slice(&place[..free(i)]));
         stream.disturb(&mut moved, redraw.obstacle_step_m);
         let mut moved = moved.into_iter();
         for (i, place) in places.iter_mut().enumerate() {
