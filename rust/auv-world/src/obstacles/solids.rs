@@ -5,8 +5,8 @@ use wide::f64x4;
 use super::Solid;
 use super::nearest::Nearest;
 use super::polygon::Prism;
-use crate::lanes::{Column, LANES, least};
-use crate::math::Vec3;
+use crate::lanes::{LANES, least};
+use crate::math::{Vec2, Vec3};
 
 /// A box that nothing is near to: padding.
 const FAR: f64 = 1e15;
@@ -17,17 +17,46 @@ const SLACK: f64 = 1e-12;
 #[derive(Debug, Clone, Default)]
 pub struct Solids {
     shapes: Vec<Solid>,
-    low: [Column; 2],
-    high: [Column; 2],
+    boxes: Vec<Boxes>,
+}
+
+/// The boxes on the map round four shapes that follow each other.
+#[derive(Debug, Clone, Copy)]
+struct Boxes {
+    low: [[f64; LANES]; 2],
+    high: [[f64; LANES]; 2],
+}
+
+impl Boxes {
+    const NONE: Self = Self { low: [[FAR; LANES]; 2], high: [[FAR; LANES]; 2] };
+
+    fn set(&mut self, lane: usize, (low, high): (Vec2, Vec2)) {
+        for axis in 0..2 {
+            (self.low[axis][lane], self.high[axis][lane]) = (low[axis], high[axis]);
+        }
+    }
+
+    /// Squared distances on the map.
+    #[inline(always)]
+    fn squares(&self, point: Vec3) -> f64x4 {
+        let [dx, dy] = [0, 1].map(|axis| {
+            let at = f64x4::splat(point[axis]);
+            let (below, beyond) = (f64x4::new(self.low[axis]) - at, at - f64x4::new(self.high[axis]));
+            below.fast_max(beyond).fast_max(f64x4::ZERO)
+        });
+        dx * dx + dy * dy
+    }
 }
 
 impl Solids {
     /// Appends a shape.
     pub fn push(&mut self, shape: Solid) {
-        let (low, high) = shape.bounds();
-        for axis in 0..2 {
-            self.low[axis].push(low[axis], FAR);
-            self.high[axis].push(high[axis], FAR);
+        let lane = self.shapes.len() % LANES;
+        if lane == 0 {
+            self.boxes.push(Boxes::NONE);
+        }
+        if let Some(boxes) = self.boxes.last_mut() {
+            boxes.set(lane, shape.bounds());
         }
         self.shapes.push(shape);
     }
@@ -35,10 +64,7 @@ impl Solids {
     /// Moves shape `i`.
     pub fn place(&mut self, i: usize, position: Vec3) {
         self.shapes[i].place(position);
-        let (low, high) = self.shapes[i].bounds();
-        for axis in 0..2 {
-            (self.low[axis][i], self.high[axis][i]) = (low[axis], high[axis]);
-        }
+        self.boxes[i / LANES].set(i % LANES, self.shapes[i].bounds());
     }
 
     /// The shapes.
@@ -49,14 +75,7 @@ impl Solids {
     /// Squared distances on the map to the boxes, four at once.
     #[inline(always)]
     fn squares(&self, point: Vec3) -> impl Iterator<Item = f64x4> + '_ {
-        let (x, y) = (f64x4::splat(point[0]), f64x4::splat(point[1]));
-        let along = self.low[0].chunks().zip(self.high[0].chunks());
-        let across = self.low[1].chunks().zip(self.high[1].chunks());
-        along.zip(across).map(move |((low_x, high_x), (low_y, high_y))| {
-            let dx = (low_x - x).fast_max(x - high_x).fast_max(f64x4::ZERO);
-            let dy = (low_y - y).fast_max(y - high_y).fast_max(f64x4::ZERO);
-            dx * dx + dy * dy
-        })
+        self.boxes.iter().map(move |boxes| boxes.squares(point))
     }
 
     /// The lesser of `nearest` and the signed distance (m) to the nearest shape, never more than the true one.
@@ -187,7 +206,6 @@ fn level(directions: &[Vec3], four: [usize; LANES]) -> [f64x4; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Vec2;
     use crate::obstacles::march as walk;
     use crate::scenario::{Cylinder, Polygon, Superquadric};
     use proptest::prelude::*;
