@@ -127,6 +127,15 @@ impl<'a> Writer<'a> {
         self.values[self.next] = value.clamp(low, high) as f32;
         self.next += 1;
     }
+
+    /// Puts what `value` makes of each of `from`.
+    #[inline]
+    fn put_all(&mut self, from: &[f64], value: impl Fn(f64) -> f64, low: f64, high: f64) {
+        let first = self.next;
+        self.next += from.len();
+        let to = self.values[first..self.next].iter_mut().zip(from);
+        to.for_each(|(to, from)| *to = value(*from).clamp(low, high) as f32);
+    }
 }
 
 /// Seconds between the two looks from which a velocity is told.
@@ -211,9 +220,7 @@ pub(crate) fn observe(episode: &Episode, ranges: &[f64], out: &mut Writer<'_>) {
         out.put(forward / speed, -2.0, 2.0);
         out.put(left / speed, -2.0, 2.0);
     }
-    for range in ranges {
-        out.put(1.0 - range / sonar_range, 0.0, 1.0);
-    }
+    out.put_all(ranges, |range| 1.0 - range / sonar_range, 0.0, 1.0);
     let axes = if deep { 3 } else { 2 };
     let mut sensor = Sensor::new(episode);
     for contact in nearest(episode, sonar_range, axes) {

@@ -27,7 +27,7 @@ fn series(s: f64x4) -> f64x4 {
 
 /// A lower bound of the distance to each of four peaks, or anything not less than `nearest` where they are
 /// farther than that, from points `above` the flat floor at `u`; minus the gap inside.
-#[inline]
+#[inline(always)]
 fn distance_bound(height: f64x4, steepness: f64x4, u: f64x4, above: f64x4, nearest: f64) -> f64x4 {
     let here = height * exp4(f64x4::splat(-0.5) * u * u);
     let gap = above - here;
@@ -192,13 +192,14 @@ impl PeakFloor {
 
     /// Walks along one to four beams, by their numbers, towards peak `i`.
     fn walk(&self, i: usize, origin: Vec3, beams: &[BeamColumns], numbers: &[usize], ranges: &mut [[f64; LANES]]) {
-        let place = |lane: usize| {
+        let (mut four, mut longest) = (BeamColumns::default(), [0.0; LANES]);
+        for lane in 0..LANES {
             let number = numbers[lane.min(numbers.len() - 1)];
-            (number / LANES, number % LANES)
-        };
-        let lanes = |value: &dyn Fn((usize, usize)) -> f64| f64x4::new(std::array::from_fn(|lane| value(place(lane))));
-        let four: Beams = std::array::from_fn(|axis| lanes(&|(chunk, lane)| beams[chunk][axis][lane]));
-        let found = self.march(i, origin, &four, lanes(&|(chunk, lane)| ranges[chunk][lane])).to_array();
+            let (chunk, at) = (number / LANES, number % LANES);
+            (0..3).for_each(|axis| four[axis][lane] = beams[chunk][axis][at]);
+            longest[lane] = ranges[chunk][at];
+        }
+        let found = self.march(i, origin, &four.map(f64x4::new), f64x4::new(longest)).to_array();
         for (&number, range) in numbers.iter().zip(found) {
             ranges[number / LANES][number % LANES] = range;
         }
