@@ -41,6 +41,7 @@ test: $(VENV)/.dev ## Rust and Python tests
 check: $(VENV)/.dev ## linters and type checkers, as in CI
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --quiet -- -D warnings
+	cargo clippy --workspace --lib --quiet -- -D warnings -D clippy::expect_used
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy

@@ -336,11 +336,7 @@ impl World {
 
     /// Whether obstacle `i` reaches through all depths, so that only the distance on the map counts.
     fn is_flat(&self, i: usize) -> bool {
-        match self.slots[i] {
-            Slot::Sphere(_) => false,
-            Slot::Disc(_) => true,
-            Slot::Solid(slot) => !matches!(self.solids.shapes()[slot], Solid::Superquadric(_)),
-        }
+        self.fixed.scenario.obstacles[i].is_flat()
     }
 
     /// Radius (m) of a ball or circle that holds each obstacle.

@@ -57,10 +57,11 @@ impl Prism {
         self.top <= depth && depth <= self.bottom
     }
 
-    /// Whether a point lies in the box that holds it.
+    /// Whether on the map a point lies in its outline or on it.
     #[inline]
-    pub(super) fn may_hold(&self, point: Vec3) -> bool {
-        self.outline.may_hold(self.relative(point))
+    pub(super) fn covers(&self, point: Vec3) -> bool {
+        let place = self.relative(point);
+        self.outline.may_hold(place) && self.outline.distance(place) <= 0.0
     }
 
     /// [`Outline::may_stop`] where it is now.

@@ -51,13 +51,9 @@ impl Boxes {
 impl Solids {
     /// Appends a shape.
     pub fn push(&mut self, shape: Solid) {
-        let lane = self.shapes.len() % LANES;
-        if lane == 0 {
-            self.boxes.push(Boxes::NONE);
-        }
-        if let Some(boxes) = self.boxes.last_mut() {
-            boxes.set(lane, shape.bounds());
-        }
+        let i = self.shapes.len();
+        self.boxes.resize(i / LANES + 1, Boxes::NONE);
+        self.boxes[i / LANES].set(i % LANES, shape.bounds());
         self.shapes.push(shape);
     }
 
@@ -160,7 +156,7 @@ impl Solids {
 
 /// [`Solid::range`] of a polygon that beams can only meet from the side: those that may are taken four at once.
 fn level_range(prism: &Prism, origin: Vec3, directions: &[Vec3], ranges: &mut [f64]) {
-    if prism.may_hold(origin) && prism.clearance(origin) <= 0.0 {
+    if prism.covers(origin) {
         ranges.fill(0.0);
         return;
     }
